@@ -23,8 +23,8 @@ static const char usage[] =
     "usage: fmb mesh [OPTIONS] A B\n"
     "\n"
     "Decides exactly which faces of the triangle mesh A meet which faces of B. A and\n"
-    "B are files in PLY (ASCII or binary), STL (ASCII or binary) or OBJ. Faces are\n"
-    "numbered from 0, in the order of the file.\n"
+    "B are files in PLY (ASCII or binary), STL (ASCII or binary), OBJ or COLLADA, of\n"
+    "which the scene is read. Faces are numbered from 0, in the order of the file.\n"
     "\n"
     "Transformations, applied in the order given. Those after a file apply to that\n"
     "mesh, those before the first file to both.\n"
@@ -181,7 +181,7 @@ static bool take_as(const struct args *args, void *out)
 
 static bool read_mesh(const char *path, const struct placed *placed, struct mesh *out)
 {
-    char error[MESH_ERROR_MAX];
+    char error[MESH_ERROR_MAX], unit[NUMBER_TEXT_MAX];
     progress_begin("bytes");
     const bool good = mesh_read(path, MESH_TRIANGLES, out, error);
     progress_end();
@@ -189,6 +189,8 @@ static bool read_mesh(const char *path, const struct placed *placed, struct mesh
         complain("%s: %s", path, error);
         return false;
     }
+    if (out->unit > 0 && out->unit != 1)
+        complain("%s: its <unit>, %s m, is applied", path, number_short(out->unit, unit));
     const size_t far = mesh_transform(&placed->transform, out);
     if (far == SIZE_MAX)
         return true;

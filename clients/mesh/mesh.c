@@ -26,14 +26,6 @@ static bool ends_with(const char *name, const char *ending)
     return length >= wanted && strcasecmp(name + length - wanted, ending) == 0;
 }
 
-const char *mesh_unsupported(const char *name)
-{
-    return ends_with(name, ".dae")
-               ? "COLLADA is not supported: convert it to STL or OBJ, by a program that leaves its "
-                 "axes as they are"
-               : NULL;
-}
-
 /* Text contains no 0 byte. The facet count of a binary STL file does, unless there are more than
  * sixteen million facets. */
 static bool has_zero(const struct mesh_source *source)
@@ -57,7 +49,7 @@ static const unsigned char *first_statement(const struct mesh_source *source)
 static bool read_unknown(struct mesh_source *source)
 {
     return mesh_refuse(source, source->begin,
-                       "no PLY, STL or OBJ file, by its name nor by its contents");
+                       "no PLY, STL, OBJ or COLLADA file, by its name nor by its contents");
 }
 
 static bool read_any(struct mesh_source *source, const char *name, struct mesh *out)
@@ -75,6 +67,8 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
     if (begins_with(source, mark))
         source->at += strlen(mark);
     const unsigned char *first = mesh_skip_spaces(source->at);
+    if (*first == '<' || ends_with(name, ".dae"))
+        return mesh_dae(source, out);
     if (strncasecmp((const char *) first, "solid", 5) == 0 && mesh_ends_word(source, first + 5) &&
         !has_zero(source))
         return mesh_stl_ascii(source, out);
@@ -166,10 +160,7 @@ bool mesh_read(const char *path, enum mesh_faces faces, struct mesh *out,
 {
     size_t size = 0;
     *out = (struct mesh){0};
-    const char *why = mesh_unsupported(path);
-    if (why)
-        snprintf(error, MESH_ERROR_MAX, "%s", why);
-    unsigned char *bytes = why ? NULL : read_file(path, &size, error);
+    unsigned char *bytes = read_file(path, &size, error);
     const bool good = bytes && mesh_parse(bytes, size, path, faces, out, error);
     free(bytes);
     return good;

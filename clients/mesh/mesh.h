@@ -1,13 +1,15 @@
-/* Triangle meshes, read from files of three formats:
+/* Triangle meshes, read from files of four formats:
  *
  *     PLY 1.0  ASCII, and binary of both byte orders; any elements and properties besides those
  *              that are needed, in any order
  *     STL      ASCII and binary
  *     OBJ      v and f; statements that define no surface are skipped
+ *     COLLADA  the scene of the file: the triangles and polygons of its nodes, with their
+ *              transformations, and its unit of length; its up axis is not applied
  *
  * The format is detected from the contents, in this order: "ply" and the end of a line; a size of
- * 84 + 50 n bytes where binary STL stores its facet count n; "solid". If none of these apply, the
- * extension of the file name decides, then the first statement.
+ * 84 + 50 n bytes where binary STL stores its facet count n; "<" of COLLADA; "solid". If none of
+ * these apply, the extension of the file name decides, then the first statement.
  *
  * Numbers. A coordinate in text is the double nearest to the decimal number, whatever type a PLY
  * header declares for it: "0.1" of a float is 0.1, not the float nearest to it. A coordinate in a
@@ -17,9 +19,9 @@
  * Faces are triangles; any other face is an error. A face whose vertices coincide or are collinear
  * is kept, and so is a vertex without a face. A mesh may be empty.
  *
- * Vertices are in the order of the file in PLY and OBJ. STL has no indices: vertices with equal
- * coordinates (0 equals -0) become one, in the order of their first appearance. Normals and
- * attributes of STL are ignored.
+ * Vertices are in the order of the file in PLY and OBJ, and of instances in COLLADA. STL has no
+ * indices: vertices with equal coordinates (0 equals -0) become one, in the order of their first
+ * appearance. Normals and attributes of STL are ignored.
  *
  * Counts in a file are not trusted: a count that the remaining bytes cannot hold is an error, found
  * before memory is allocated. After the last element of a PLY file only white space may follow; a
@@ -37,6 +39,9 @@ struct mesh {
     unsigned (*face)[3]; /* owned; [face][corner], indices of vertices; NULL if there are none */
     /* Owned; [object_count]: the number of faces before each object (o) of an OBJ; NULL: none */
     size_t *object, object_count;
+    /* Of COLLADA: metres of a unit of the file, with which vertices were multiplied; 0: none is
+     * given, or another format. */
+    double unit;
 };
 
 /* Most bytes of an error text, final 0 included: one line that states what is wrong and where.
@@ -49,9 +54,6 @@ enum mesh_faces {
     MESH_TRIANGLES, /* nothing: the mesh is refused */
     MESH_POLYGONS   /* faces of more vertices, as a fan of triangles, which has the same hull */
 };
-
-/* Returns why a file with the extension of this name is refused; NULL: it may be a mesh. */
-const char *mesh_unsupported(const char *name);
 
 /* Reads a mesh from a regular file. The whole file is in memory during the call. Progress
  * is counted in bytes (progress.h). Returns true and a mesh, which the caller passes to

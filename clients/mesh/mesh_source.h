@@ -100,6 +100,7 @@ bool mesh_ply(struct mesh_source *source, struct mesh *out);
 bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out);
 bool mesh_stl_binary(struct mesh_source *source, struct mesh *out);
 bool mesh_obj(struct mesh_source *source, struct mesh *out);
+bool mesh_dae(struct mesh_source *source, struct mesh *out);
 
 /* Whether the file has the size that its facet count requires as binary STL. */
 bool mesh_is_stl_binary(const struct mesh_source *source);

@@ -6,6 +6,7 @@
 #include "fmb_client.h"
 #include "mesh_hull.h"
 #include "mesh.h"
+#include "number.h"
 #include "output.h"
 #include "turned_box.h"
 
@@ -22,6 +23,7 @@ struct frames {
     const struct robot_link *link;
     const struct robot_body_options *options;
     struct owned_scene *scene;
+    struct robot_meshes *meshes;
     const struct pose *placed; /* of the current element in the body; NULL: at its origin */
     struct given_frame *frame; /* owned */
     size_t count, capacity;
@@ -195,18 +197,29 @@ static bool add_mesh(struct frames *frames, const struct robot_element *element)
 {
     char error[MESH_ERROR_MAX];
     struct mesh mesh;
-    const char *why = mesh_unsupported(element->file);
-    if (why)
-        return refuse(frames, element, "%s: %s", element->file, why);
     char *path = find_mesh(frames, element);
     if (!path)
         return false;
     const bool good = mesh_read(path, MESH_POLYGONS, &mesh, error)
                           ? add_objects(frames, element, path, &mesh)
                           : refuse(frames, element, "%s: %s", path, error);
+    if (mesh.unit > 0 && mesh.unit != 1 && frames->meshes->scaled++ == 0) {
+        frames->meshes->first_file = element->file;
+        frames->meshes->first_unit = mesh.unit;
+    }
     mesh_free(&mesh);
     free(path);
     return good;
+}
+
+void robot_meshes_report(const struct robot_meshes *meshes, const char *file)
+{
+    char text[NUMBER_TEXT_MAX];
+    if (meshes->scaled > 0)
+        complain(
+            "%s: the <unit> of %zu of its COLLADA meshes is applied, as in RViz and Gazebo, "
+            "but not in MoveIt: %s m in %s",
+            file, meshes->scaled, number_short(meshes->first_unit, text), meshes->first_file);
 }
 
 /* ---- Bodies ---- */
@@ -243,9 +256,11 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
 
 const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
                                   const struct robot_body_options *options,
-                                  struct owned_scene *scene, struct pose *origin)
+                                  struct owned_scene *scene, struct robot_meshes *meshes,
+                                  struct pose *origin)
 {
-    struct frames frames = {.robot = robot, .link = link, .options = options, .scene = scene};
+    struct frames frames = {
+        .robot = robot, .link = link, .options = options, .scene = scene, .meshes = meshes};
     const struct robot_element *element = &robot->elements[link->element];
     const struct fmb_body *body = NULL;
     bool good = true;

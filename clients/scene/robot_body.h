@@ -12,15 +12,27 @@ struct robot_body_options {
     const char *package_path; /* folders of packages, separated by colons; NULL: none */
 };
 
+/* What was done to the meshes of a robot. All 0: nothing. */
+struct robot_meshes {
+    size_t scaled;          /* the number of COLLADA meshes whose unit is not 1 m ... */
+    const char *first_file; /* ... and the first one */
+    double first_unit;
+};
+
+/* Reports it, in at most one line for each kind of change. file: of the robot. */
+void robot_meshes_report(const struct robot_meshes *meshes, const char *file);
+
 /* Makes the body of a link that has at least one collision element. If it has only one, the origin
  * of the body is that of the element, and its numbers are those of the file. If it has several, the
  * origin is that of the link, and the numbers of elements with an origin are rounded.
  *
  * In/out: scene    of dim 3; owns the body; its `outside` is raised
+ *         meshes   of the robot so far
  * Out:    *origin  of the body, in the link
  * Returns NULL after an error, which was reported on stderr. */
 const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
                                   const struct robot_body_options *options,
-                                  struct owned_scene *scene, struct pose *origin);
+                                  struct owned_scene *scene, struct robot_meshes *meshes,
+                                  struct pose *origin);
 
 #endif

@@ -36,6 +36,7 @@ static void report_empty(const struct robot *robot)
 void robot_scene_report(const struct robot_scene *scene, const char *world)
 {
     report_empty(scene->robot);
+    robot_meshes_report(&scene->meshes, scene->robot->path);
     scene_report_outside(scene->robot->path, scene->owner.outside);
     scene_report_outside(world, scene->world.outside);
 }
@@ -81,10 +82,10 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
         if (link->element_count == 0)
             continue;
         out->link[n] = i;
-        out->placements[n] =
-            (struct fmb_placement){.body = robot_body(robot, link, options, owner, &out->origin[n]),
-                                   .name = link->name->name,
-                                   .id = (int64_t) n + 1};
+        out->placements[n] = (struct fmb_placement){
+            .body = robot_body(robot, link, options, owner, &out->meshes, &out->origin[n]),
+            .name = link->name->name,
+            .id = (int64_t) n + 1};
         good = out->placements[n].body && good;
         out->robot_bodies++;
     }

@@ -15,6 +15,7 @@ struct robot_scene {
     struct pose *origin;              /* [robot_bodies], in the link */
     struct pose *pose;                /* [link_count] */
     size_t robot_bodies;
+    struct robot_meshes meshes;
     struct owned_scene world; /* owned */
 };
 
@@ -25,8 +26,8 @@ bool robot_scene_make(const struct robot *robot, const struct robot_body_options
                       struct robot_scene *out);
 void robot_scene_clear(struct robot_scene *scene);
 
-/* Reports the links without a body, and how far hulls extend beyond the cylinders of the robot and
- * of the world, each in one line. In: world: its file, or NULL. */
+/* Reports the links without a body, what was done to meshes, and how far hulls extend beyond the
+ * cylinders of the robot and of the world, each in one line. In: world: its file, or NULL. */
 void robot_scene_report(const struct robot_scene *scene, const char *world);
 
 /* Adds the bodies, ignored pairs, duration and margin of a file of one scene in 3D. A body whose

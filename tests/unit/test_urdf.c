@@ -191,7 +191,9 @@ static void check_enclosure(int sides, double radius, double length, const doubl
              origin[0], origin[1], origin[2], origin[3], origin[4], origin[5], radius, length,
              alone ? "" : "<collision><geometry><box size='1 1 1'/></geometry></collision>");
     read_text(text, &robot);
-    const struct fmb_body *body = robot_body(&robot, &robot.links[0], &options, &scene, &pose);
+    struct robot_meshes meshes = {0};
+    const struct fmb_body *body =
+        robot_body(&robot, &robot.links[0], &options, &scene, &meshes, &pose);
     assert_non_null(body);
     if (!alone) {
         assert_memory_equal(&pose, &placed, sizeof pose);

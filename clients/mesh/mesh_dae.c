@@ -1,0 +1,539 @@
+/* COLLADA parser. Expat's events become a tree of elements. The nodes of the file's scene are then
+ * visited, and the primitives of each instance of a geometry become vertices, transformed, and
+ * faces. Text is read where it stands in the file, so that errors name its line.
+ *
+ * Files are not trusted. A document type declaration is refused, so that no entity expands. Nodes
+ * may contain instances of others, which multiply: what is read is bounded with its repetitions, as
+ * is the depth, and a node within itself is an error. */
+#include "mesh_source.h"
+
+#include "keyed_hash.h"
+#include "turn.h"
+
+#include <expat.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    BYTES_MAX = 1 << 28, /* of the file; twice as many may be read, where instances repeat them */
+    VISIT_BYTES = 64,    /* counted for each child of a node */
+    ELEMENTS_MAX = 1 << 20,
+    DEPTH_MAX = 256 /* of nodes */
+};
+
+struct element {
+    const unsigned char *begin, *end;     /* of all of it */
+    const unsigned char *text, *text_end; /* its text, before the first child */
+    const char *name;
+    const char *attributes;                       /* name, value, ..., "": each ends with a 0 */
+    struct element *parent, *child, *last, *next; /* first and last child; next sibling */
+    struct element *previous;                     /* in the list of all */
+    UT_hash_handle hh;                            /* by id */
+    bool repeated;                                /* another element has its id */
+    bool open;                                    /* a node that is being visited */
+};
+
+/* Maps x to row[i][0] x[0] + row[i][1] x[1] + row[i][2] x[2] + row[i][3]. */
+struct affine {
+    double row[3][4];
+};
+
+/* The text of an element as numbers. */
+struct numbers {
+    double *number; /* owned, [count] */
+    size_t count, capacity;
+};
+
+struct dae {
+    struct mesh_build build;
+    XML_Parser xml;
+    struct element *root, *at, *all, *ids; /* at: the open element; ids: a table */
+    size_t element_count, bytes;           /* bytes: read, with repetitions */
+    struct numbers numbers, sizes;
+    /* The vertices of the last primitive, in the same instance of a geometry. */
+    const struct element *vertices; /* NULL: there was none */
+    size_t first, count;            /* their range in the mesh */
+};
+
+#define refuse(dae, element, ...) mesh_refuse((dae)->build.source, (element)->begin, __VA_ARGS__)
+
+/* ---- The tree -------------------------------------------------------------------------------- */
+
+static const unsigned char *position(const struct dae *dae)
+{
+    const struct mesh_source *source = dae->build.source;
+    const XML_Index index = XML_GetCurrentByteIndex(dae->xml);
+    return index >= 0 && (size_t) index < mesh_left(source) ? source->at + index : source->end;
+}
+
+/* Stops the parser: there is an error. */
+static void stop(struct dae *dae, const char *why)
+{
+    mesh_refuse(dae->build.source, position(dae), "%s", why);
+    XML_StopParser(dae->xml, XML_FALSE);
+}
+
+static bool has_stopped(const struct dae *dae)
+{
+    return *dae->build.source->error;
+}
+
+static void XMLCALL on_begin(void *user, const XML_Char *name, const XML_Char **attributes)
+{
+    struct dae *dae = user;
+    struct element *parent = dae->at, *other;
+    size_t size = strlen(name) + 2;
+    if (++dae->element_count > ELEMENTS_MAX && !has_stopped(dae))
+        stop(dae, "more than a million elements");
+    if (has_stopped(dae))
+        return;
+    for (int i = 0; attributes[i]; i++)
+        size += strlen(attributes[i]) + 1;
+    struct element *element = allocate(1, sizeof *element + size);
+    char *at = stpcpy((char *) (element + 1), name) + 1;
+    *element = (struct element){.begin = position(dae),
+                                .name = (char *) (element + 1),
+                                .attributes = at,
+                                .parent = parent,
+                                .previous = dae->all};
+    element->text = element->text_end = element->begin + XML_GetCurrentByteCount(dae->xml);
+    for (int i = 0; attributes[i]; i += 2) {
+        char *value = stpcpy(at, attributes[i]) + 1;
+        at = stpcpy(value, attributes[i + 1]) + 1;
+        if (strcmp(attributes[i], "id") != 0)
+            continue;
+        HASH_FIND_STR(dae->ids, value, other);
+        if (other)
+            other->repeated = true;
+        else
+            HASH_ADD_KEYPTR(hh, dae->ids, value, strlen(value), element);
+    }
+    dae->all = dae->at = element;
+    if (parent && !parent->child)
+        parent->text_end = element->begin;
+    *(!parent ? &dae->root : parent->last ? &parent->last->next : &parent->child) = element;
+    if (parent)
+        parent->last = element;
+}
+
+static void XMLCALL on_end(void *user, const XML_Char *name)
+{
+    struct dae *dae = user;
+    (void) name;
+    if (has_stopped(dae))
+        return;
+    dae->at->end = position(dae);
+    if (!dae->at->child)
+        dae->at->text_end = dae->at->end;
+    dae->at = dae->at->parent;
+}
+
+static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system,
+                               const XML_Char *public, int internal)
+{
+    (void) name, (void) system, (void) public, (void) internal;
+    stop(user, "<!DOCTYPE>: document types and entities are not supported: remove the declaration");
+}
+
+static bool parse(struct dae *dae)
+{
+    struct mesh_source *source = dae->build.source;
+    if (mesh_left(source) > BYTES_MAX)
+        return mesh_refuse(source, source->begin, "more than 256 MB: give the mesh as binary STL");
+    dae->xml = XML_ParserCreate(NULL);
+    if (!dae->xml)
+        allocate_failed();
+    XML_SetUserData(dae->xml, dae);
+    XML_SetElementHandler(dae->xml, on_begin, on_end);
+    XML_SetStartDoctypeDeclHandler(dae->xml, on_doctype);
+    const bool good = XML_Parse(dae->xml, (const char *) source->at, (int) mesh_left(source),
+                                XML_TRUE) == XML_STATUS_OK;
+    if (!good && !has_stopped(dae))
+        mesh_refuse(source, position(dae), "XML: %s", XML_ErrorString(XML_GetErrorCode(dae->xml)));
+    XML_ParserFree(dae->xml);
+    return good;
+}
+
+/* ---- Elements and attributes ----------------------------------------------------------------- */
+
+static bool is(const struct element *element, const char *name)
+{
+    return strcmp(element->name, name) == 0;
+}
+
+/* Returns the first child of a name; NULL: there is none, or no parent. */
+static struct element *find_child(const struct element *parent, const char *name)
+{
+    struct element *child = parent ? parent->child : NULL;
+    while (child && !is(child, name))
+        child = child->next;
+    return child;
+}
+
+/* Returns the value of an attribute; NULL: there is none. */
+static const char *find_attribute(const struct element *element, const char *name)
+{
+    const char *at = element->attributes;
+    while (*at) {
+        const char *value = at + strlen(at) + 1;
+        if (strcmp(at, name) == 0)
+            return value;
+        at = value + strlen(value) + 1;
+    }
+    return NULL;
+}
+
+static bool has_value(const struct element *element, const char *name, const char *value)
+{
+    const char *found = find_attribute(element, name);
+    return found && strcmp(found, value) == 0;
+}
+
+/* Returns the <input> of a meaning; NULL: there is none. */
+static const struct element *find_input(const struct element *parent, const char *semantic)
+{
+    const struct element *input = parent->child;
+    while (input && !(is(input, "input") && has_value(input, "semantic", semantic)))
+        input = input->next;
+    return input;
+}
+
+/* Returns the element of this kind to which an attribute refers; NULL after an error. */
+static struct element *refer(struct dae *dae, const struct element *from, const char *name,
+                             const char *kind)
+{
+    const char *url = find_attribute(from, name);
+    struct element *found = NULL;
+    if (url && *url == '#')
+        HASH_FIND_STR(dae->ids, url + 1, found);
+    if (found && is(found, kind) && !found->repeated)
+        return found;
+    refuse(dae, from, "<%s>: its %s is not the id of one <%s> in this file", from->name, name,
+           kind);
+    return NULL;
+}
+
+/* Reads a count, below 2^31. A missing attribute is an error if missing < 0. */
+static bool read_count(struct dae *dae, const struct element *element, const char *name,
+                       int missing, size_t *out)
+{
+    const char *text = find_attribute(element, name);
+    char *end;
+    if (!text && missing >= 0) {
+        *out = (size_t) missing;
+        return true;
+    }
+    *out = text ? strtoul(text, &end, 10) : 0;
+    return (text && *text >= '0' && *text <= '9' && !*end && *out <= INT32_MAX) ||
+           refuse(dae, element, "<%s>: its %s is not a count", element->name, name);
+}
+
+/* Counts bytes from `begin` on that are read. Returns false after an error: it is too much. */
+static bool spend(struct dae *dae, const unsigned char *begin, const unsigned char *end)
+{
+    dae->bytes += (size_t) (end - begin);
+    return dae->bytes <= 2 * (size_t) BYTES_MAX ||
+           mesh_refuse(dae->build.source, begin, "more than 512 MB, with all instances");
+}
+
+/* Reads the text of an element: finite numbers. */
+static bool read_numbers(struct dae *dae, const struct element *element, struct numbers *out)
+{
+    struct mesh_source *source = dae->build.source;
+    const unsigned char *at = mesh_skip_spaces(element->text), *last = element->text_end, *end;
+    char text[MESH_WORD_MAX];
+    for (out->count = 0; at < last; at = mesh_skip_spaces(end)) {
+        out->number =
+            allocate_grow(out->number, &out->capacity, out->count + 1, sizeof *out->number);
+        double *next = &out->number[out->count++];
+        end = mesh_number(at, next);
+        if (!end || end > last || (end < last && !mesh_is_space(*end)))
+            return mesh_refuse(source, at, "'%s' is not a number", mesh_word(source, at, text));
+        if (!isfinite(*next))
+            return mesh_refuse(source, at, "a number is not finite");
+    }
+    return true;
+}
+
+/* ---- Primitives ------------------------------------------------------------------------------ */
+
+/* Adds the vertices of a <vertices>, transformed. */
+static bool add_vertices(struct dae *dae, const struct element *vertices, const struct affine *at)
+{
+    const struct element *input = find_input(vertices, "POSITION"), *source, *accessor, *array;
+    size_t numbers, count, stride, offset;
+    if (!input)
+        return refuse(dae, vertices, "<vertices> has no <input> of POSITION");
+    if (!(source = refer(dae, input, "source", "source")))
+        return false;
+    if (!(accessor = find_child(find_child(source, "technique_common"), "accessor")))
+        return refuse(dae, source, "<source> has no <accessor>");
+    if (!(array = refer(dae, accessor, "source", "float_array")) ||
+        !spend(dae, vertices->begin, vertices->end) || !spend(dae, source->begin, source->end) ||
+        !spend(dae, array->begin, array->end) || !read_count(dae, array, "count", -1, &numbers) ||
+        !read_count(dae, accessor, "count", -1, &count) ||
+        !read_count(dae, accessor, "stride", 1, &stride) ||
+        !read_count(dae, accessor, "offset", 0, &offset) ||
+        !read_numbers(dae, array, &dae->numbers))
+        return false;
+    if (numbers != dae->numbers.count)
+        return refuse(dae, array, "<float_array> has %zu numbers, not %zu", dae->numbers.count,
+                      numbers);
+    if (stride < 3 || (count > 0 && offset + stride * (count - 1) + 3 > numbers))
+        return refuse(dae, accessor,
+                      "<accessor>: %zu positions from %zu on, of stride %zu, are not in %zu "
+                      "numbers",
+                      count, offset, stride, numbers);
+    dae->vertices = vertices;
+    dae->first = dae->build.mesh->vertex_count;
+    dae->count = count;
+    for (size_t i = 0; i < count; i++) {
+        const double *x = dae->numbers.number + offset + stride * i;
+        double placed[3];
+        for (int axis = 0; axis < 3; axis++) {
+            const double *row = at->row[axis];
+            placed[axis] = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
+        }
+        if (!isfinite(placed[0]) || !isfinite(placed[1]) || !isfinite(placed[2]))
+            return refuse(dae, array, "position %zu is not finite where it is placed", i);
+        if (!mesh_add_vertex(&dae->build, placed))
+            return false;
+    }
+    return true;
+}
+
+enum primitive { TRIANGLES, POLYLIST, POLYGONS, FANS, STRIPS, PRIMITIVES };
+static const char *const primitive_name[PRIMITIVES] = {"triangles", "polylist", "polygons",
+                                                       "trifans", "tristrips"};
+
+/* A list of primitives. */
+struct set {
+    const struct element *element, *p; /* p: the list of indices that is read */
+    enum primitive primitive;
+    size_t stride, offset; /* a corner has `stride` indices; that of its vertex is at `offset` */
+};
+
+/* Adds the faces of a primitive. */
+static bool add_primitive(struct dae *dae, const struct set *set, const double *index, size_t count)
+{
+    const bool polygon = set->primitive == POLYLIST || set->primitive == POLYGONS;
+    unsigned corner[3] = {0};
+    if (count < 3 || (count > 3 && polygon && dae->build.source->faces == MESH_TRIANGLES))
+        return refuse(dae, set->p, "a face of %zu vertices: %s", count,
+                      count > 3 ? "triangulate it first" : "remove it first");
+    for (size_t n = 0; n < count; n++) {
+        const double next = index[set->stride * n + set->offset];
+        if (!(next >= 0 && next < (double) dae->count && next == floor(next)))
+            return refuse(dae, set->p, "index %g is no vertex: there are %zu, from 0 on", next,
+                          dae->count);
+        if (n >= 3)
+            corner[set->primitive == STRIPS ? (n + 1) % 2 : 1] = corner[2];
+        corner[n < 3 ? n : 2] = (unsigned) (dae->first + (size_t) next);
+        if (n >= 2 && !mesh_add_face(&dae->build, corner))
+            return false;
+    }
+    return true;
+}
+
+/* Adds the primitives of a <p>, `count` of them. */
+static bool add_list(struct dae *dae, const struct set *set, size_t count)
+{
+    const struct numbers *numbers = &dae->numbers;
+    size_t at = 0, corners = 3;
+    if (!read_numbers(dae, set->p, &dae->numbers))
+        return false;
+    const size_t all = numbers->count / set->stride;
+    for (size_t i = 0; i < count && at <= all; i++, at += corners) {
+        if (set->primitive == POLYLIST)
+            corners = (size_t) fmin(fmax(floor(dae->sizes.number[i]), 0), (double) all + 1);
+        else if (set->primitive != TRIANGLES)
+            corners = all;
+        if (corners <= all - at &&
+            !add_primitive(dae, set, numbers->number + set->stride * at, corners))
+            return false;
+    }
+    return at * set->stride == numbers->count ||
+           refuse(dae, set->p, "<p> has %s indices than <%s> needs",
+                  at < all || numbers->count % set->stride ? "more" : "fewer", set->element->name);
+}
+
+static bool add_set(struct dae *dae, struct set *set, const struct affine *at)
+{
+    const bool together = set->primitive == TRIANGLES || set->primitive == POLYLIST; /* in a <p> */
+    const struct element *element = set->element, *vertex = find_input(element, "VERTEX");
+    const struct element *vcount = find_child(element, "vcount"), *vertices;
+    size_t count, lists = 1, offset;
+    if (!read_count(dae, element, "count", -1, &count))
+        return false;
+    if (count == 0 && !find_child(element, "p"))
+        return true;
+    if (!vertex)
+        return refuse(dae, element, "<%s> has no <input> of VERTEX", element->name);
+    if (!(vertices = refer(dae, vertex, "source", "vertices")) ||
+        (vertices != dae->vertices && !add_vertices(dae, vertices, at)))
+        return false;
+    for (const struct element *child = element->child; child; child = child->next) {
+        if (is(child, "ph"))
+            return refuse(dae, child, "<ph>: polygons with holes are not supported");
+        if (!is(child, "input"))
+            continue;
+        if (!read_count(dae, child, "offset", -1, &offset))
+            return false;
+        set->stride = offset >= set->stride ? offset + 1 : set->stride;
+        set->offset = child == vertex ? offset : set->offset;
+    }
+    dae->sizes.count = 0;
+    if (vcount && !read_numbers(dae, vcount, &dae->sizes))
+        return false;
+    if (set->primitive == POLYLIST && dae->sizes.count != count)
+        return refuse(dae, element, "<polylist> has %zu numbers in <vcount>, not %zu",
+                      dae->sizes.count, count);
+    if (!together)
+        lists = count;
+    size_t found = 0;
+    for (set->p = element->child; set->p; set->p = set->p->next)
+        if (is(set->p, "p") && found++ < lists && !add_list(dae, set, together ? count : 1))
+            return false;
+    return found == lists ||
+           refuse(dae, element, "<%s> has %zu <p>, not %zu", element->name, found, lists);
+}
+
+static bool add_geometry(struct dae *dae, const struct element *geometry, const struct affine *at)
+{
+    const struct element *mesh = find_child(geometry, "mesh");
+    if (!spend(dae, geometry->begin, geometry->end))
+        return false;
+    if (!mesh)
+        return refuse(dae, geometry, "<geometry> has no <mesh>: others are not supported");
+    dae->vertices = NULL;
+    for (const struct element *child = mesh->child; child; child = child->next)
+        for (int i = 0; i < PRIMITIVES; i++) { /* <lines> and <linestrips> have no surface */
+            struct set set = {.element = child, .primitive = (enum primitive) i};
+            if (is(child, primitive_name[i]) && !add_set(dae, &set, at))
+                return false;
+        }
+    return true;
+}
+
+/* ---- Nodes ----------------------------------------------------------------------------------- */
+
+/* Sets *at to x -> at(inner(x)). */
+static void compose(struct affine *at, const double inner[12])
+{
+    const struct affine outer = *at;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            at->row[i][j] = outer.row[i][0] * inner[j] + outer.row[i][1] * inner[4 + j] +
+                            outer.row[i][2] * inner[8 + j] + (j == 3 ? outer.row[i][3] : 0);
+}
+
+/* Sets n to the rotation by q[3] degrees about the axis q[0..2], not 0. */
+static void rotate(const double q[4], double n[12])
+{
+    const double most = fmax(fmax(fabs(q[0]), fabs(q[1])), fabs(q[2]));
+    const double a[3] = {q[0] / most, q[1] / most, q[2] / most};
+    const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    double turn[2];
+    turn_degrees(q[3], turn);
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3;
+        const double x = a[i] / length, y = a[j] / length, z = a[(i + 2) % 3] / length;
+        n[5 * i] = x * x + turn[0] * (1 - x * x);
+        n[4 * i + j] = (1 - turn[0]) * x * y - turn[1] * z;
+        n[4 * j + i] = (1 - turn[0]) * x * y + turn[1] * z;
+    }
+}
+
+/* Applies a transformation, if the element is one. */
+static bool transform(struct dae *dae, const struct element *element, struct affine *at)
+{
+    static const char *const names[] = {"matrix", "rotate", "translate", "scale"};
+    static const size_t counts[] = {16, 4, 3, 3};
+    double n[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    size_t kind = 0;
+    while (kind < 4 && !is(element, names[kind]))
+        kind++;
+    if (kind == 4)
+        return true;
+    if (!read_numbers(dae, element, &dae->numbers))
+        return false;
+    const double *x = dae->numbers.number;
+    if (dae->numbers.count != counts[kind])
+        return refuse(dae, element, "<%s> has %zu numbers, not %zu", element->name,
+                      dae->numbers.count, counts[kind]);
+    if (kind == 0 && (x[12] != 0 || x[13] != 0 || x[14] != 0 || x[15] != 1))
+        return refuse(dae, element, "<matrix>: its last row is not 0 0 0 1");
+    if (kind == 1 && x[0] == 0 && x[1] == 0 && x[2] == 0)
+        return refuse(dae, element, "<rotate>: its axis is 0");
+    if (kind == 0)
+        memcpy(n, x, sizeof n);
+    else if (kind == 1)
+        rotate(x, n);
+    for (int i = 0; i < 3 && kind > 1; i++)
+        n[kind == 2 ? 4 * i + 3 : 5 * i] = x[i];
+    compose(at, n);
+    return true;
+}
+
+/* Adds what a node of the scene, or the scene itself, contains. */
+static bool visit(struct dae *dae, struct element *node, struct affine at, int depth)
+{
+    if (node->open || depth == DEPTH_MAX)
+        return refuse(dae, node, "<%s>: %s", node->name,
+                      node->open ? "the node contains an instance of itself"
+                                 : "more than 256 nodes within each other");
+    node->open = true;
+    for (struct element *child = node->child; child; child = child->next) {
+        struct element *inner = child;
+        const bool nested = is(child, "node"), instance = is(child, "instance_node");
+        const bool geometry = is(child, "instance_geometry");
+        dae->bytes += VISIT_BYTES;
+        if (is(child, "instance_controller") || is(child, "lookat") || is(child, "skew"))
+            return refuse(dae, child, "<%s> is not supported", child->name);
+        if (!spend(dae, child->begin, nested ? child->text : child->end) ||
+            !transform(dae, child, &at) ||
+            ((geometry || instance) &&
+             !(inner = refer(dae, child, "url", geometry ? "geometry" : "node"))) ||
+            (geometry && !add_geometry(dae, inner, &at)) ||
+            ((nested || instance) && !visit(dae, inner, at, depth + 1)))
+            return false;
+    }
+    node->open = false;
+    return true;
+}
+
+static bool read_scene(struct dae *dae, struct mesh *out)
+{
+    const struct element *root = dae->root;
+    const struct element *unit = find_child(find_child(root, "asset"), "unit");
+    const struct element *instance = find_child(find_child(root, "scene"), "instance_visual_scene");
+    const char *meter = unit ? find_attribute(unit, "meter") : NULL;
+    if (!is(root, "COLLADA"))
+        return refuse(dae, root, "expected <COLLADA>: other formats in XML are not supported");
+    if (meter) {
+        const unsigned char *end = mesh_number((const unsigned char *) meter, &out->unit);
+        if (!end || *end || !(out->unit > 0) || isinf(out->unit))
+            return refuse(dae, unit, "<unit>: its meter is not a finite number above 0");
+    }
+    if (!instance)
+        return refuse(dae, root, "<COLLADA> has no <scene> with an <instance_visual_scene>");
+    struct element *scene = refer(dae, instance, "url", "visual_scene");
+    const double m = meter ? out->unit : 1;
+    return scene && visit(dae, scene, (struct affine){{{m}, {0, m}, {0, 0, m}}}, 0);
+}
+
+bool mesh_dae(struct mesh_source *source, struct mesh *out)
+{
+    struct dae dae = {.build = {.source = source, .mesh = out}};
+    source->text = true;
+    const bool good = parse(&dae) && read_scene(&dae, out);
+    HASH_CLEAR(hh, dae.ids);
+    free(dae.numbers.number);
+    free(dae.sizes.number);
+    for (struct element *element = dae.all, *previous; element; element = previous) {
+        previous = element->previous;
+        free(element);
+    }
+    return good;
+}
