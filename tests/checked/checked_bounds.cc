@@ -70,6 +70,11 @@ static struct constant constants[] = {
     {"GAP_SLIP", 1},
     {"BOX_PLACE_ROUNDING_EXACT", BOX_PLACE_ROUNDING_EXACT, 0, 0, AT_HAND},
     {"SUPPORT_ROUNDING", 0, 0, 0, AT_HAND},
+    /* Relative to the error of a value, u reach. Both values are at most reach / 9, and the
+     * direction is off by 2 u of itself. */
+    {"SUPPORT_ORDERED", 0, 2 / 9.L * 0x1p53L, 4 / 9.L * 0x1p53L},
+    /* The matrix, 13 u; sums of weights, 8 u; the difference of the points. */
+    {"SUPPORT_WITNESS", 0, 1, 22},
     {"SUPPORT_DETERMINANT", 0, 0, 0, AT_HAND},
     {"SUPPORT_HEIGHT", 0, 0, 0, AT_HAND},
     {"POLYTOPE_ERROR", 0, 0, 0, AT_HAND},
@@ -458,9 +463,8 @@ static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
     "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), bounds of normals\n"
-    "(gap_bounds.c), witness points and depths of hulls (support_gap.c, support_depth.c), and "
-    "what\n"
-    "is done in integers. In the filter and in gaps frames count as given, without errors.\n";
+    "(gap_bounds.c), depths of hulls (support_depth.c), and what is done in integers. In\n"
+    "the filter and in gaps frames count as given, without errors.\n";
 
 /* A fraction of a constant. */
 static void print_share(FILE *out, long double share)

@@ -40,8 +40,16 @@ typedef lanes rotation_two;
 #undef unit_roundoff
 #include "polytope.c"
 #include "support_search.c"
+#include "support_witness.c"
 
 #undef double
+
+/* Not reached. */
+unsigned support_list(const struct support_vertices *, const number[FMB_DIM_MAX], number,
+                      uint16_t *)
+{
+    return 0;
+}
 
 struct checked_frame {
     struct fmb_frame frame;
@@ -109,6 +117,53 @@ static void check_support(const struct support_pair *pair, const number n[FMB_DI
     check_vector("SUPPORT_ROUNDING", 32 * 0x1p-53, out->at, FMB_DIM_MAX, error);
 }
 
+/* The order of all vertices but the last. */
+static void check_order(const struct support_view *view)
+{
+    const number n[FMB_DIM_MAX] = {0.04, -0.05, view->vertices.dim == 3 ? 0.06 : 0};
+    uint16_t face[FMB_HULL_VERTICES_MAX], listed[FMB_HULL_VERTICES_MAX];
+    for (unsigned i = 0; i < view->vertices.count; i++)
+        face[i] = (uint16_t) i;
+    support_view_list(view, n, face, view->vertices.count - 1, listed);
+}
+
+/* The witness points, for any weights. */
+static void check_witness(const struct support_pair *pair, struct support_nearest *nearest)
+{
+    struct support_gap gap = {pair};
+    struct fmb_gap out;
+    number length[2];
+    gap.duration = pair->frames->duration;
+    for (unsigned c = 0; c < nearest->simplex.count; c++)
+        nearest->weight[c] = given(nearest->weight[c]);
+    for (int f = 0; f < 2; f++) {
+        const struct fmb_placement *placement = pair->view[f].placed.placement;
+        for (int axis = 0; axis < pair->dim; axis++) {
+            gap.position[f][axis] = placement->position[axis];
+            gap.displacement[f][axis] = given(placement->velocity[axis] * gap.duration);
+        }
+        length[f] =
+            given(vec3_sum(gap.position[f]) + vec3_sum(gap.displacement[f]) + pair->view[f].reach);
+    }
+    support_witness(&gap, nearest, &out);
+    for (int f = 0; f < 2; f++)
+        check_vector("SUPPORT_WITNESS", SUPPORT_WITNESS, out.witness[f], FMB_DIM_MAX,
+                     SUPPORT_WITNESS * length[f]);
+}
+
+/* From here on vertices and matrices count as given: their errors are slack, and MATRIX_ERROR. */
+static void give_views(struct support_pair *pair)
+{
+    for (support_view &view : pair->view) {
+        for (number &coordinate : view.small)
+            coordinate = given(coordinate);
+        for (int i = 0; i < FMB_DIM_MAX; i++) {
+            view.rotation.xy[i] = given(view.rotation.xy[i]);
+            view.rotation.z[i] = given(view.rotation.z[i]);
+        }
+    }
+}
+
 /* A mesh of the points, on a grid of nearly 2^52 units. */
 static void check_mesh(const struct support_pair *pair, const struct support_vertex *vertex,
                        int count)
@@ -162,6 +217,11 @@ void check_hulls(const struct checked_vertices from[2], plain_double duration)
             support_contact(&pair, &nearest.simplex, bounds);
             support_box(&pair, &nearest.simplex, box);
         }
+        give_views(&pair);
+        for (const struct support_view &view : pair.view)
+            check_order(&view);
+        if (nearest.outcome == GAP_KNOWN)
+            check_witness(&pair, &nearest);
     }
     arena_clear();
 }

@@ -265,16 +265,10 @@ static void swap_points(struct point *x, struct point *y)
 
 /* ---- Pricing ---- */
 
-/* Rounds e->body, scaled to a largest coordinate in [1/32, 1/16), so that no sum of products
- * overflows. Each coordinate is truncated to 53 bits, off by at most 2^-52 of itself, and by
- * 2^-1074 if it is far smaller than the largest. The product with a vertex v is off by another 3.01
- * 2^-53 of the magnitudes of its terms (support.h). With |n| < 1/9, a value is off by less than
- * 5.01/9 2^-53 |v| + slack + 2^-1000. |v| is at most the reach, which may be infinite, and less
- * than sqrt(3) 2^1024, since coordinates are finite: 2^972 bounds the first term then. Coordinates
- * of a frame that is not a hull are sums, which may overflow; its slack is then infinite, and no
- * vertex is left out. Returns the bound. */
-static double round_direction(const struct programs *e, const struct side *side,
-                              double n[FMB_DIM_MAX])
+/* n := e->body, scaled to a largest coordinate in [1/32, 1/16), so that no sum of products
+ * overflows, and |n| < 1/9. Each coordinate is truncated to 53 bits, off by at most 2^-52 of
+ * itself, and by 2^-1074 if it is far smaller than the largest. */
+static void round_direction(const struct programs *e, double n[FMB_DIM_MAX])
 {
     long exponent[3], largest = 0;
     bool any = false;
@@ -289,26 +283,6 @@ static double round_direction(const struct programs *e, const struct side *side,
         const long down = largest - exponent[axis];
         n[axis] = n[axis] == 0 || down > 1100 ? 0 : ldexp(n[axis], (int) -down - 4);
     }
-    return fmin(0x1p-53 * side->view->reach, 0x1p972) + side->view->slack + 0x1p-1000;
-}
-
-/* Lists the vertices of the face that may have the greatest value along e->body. Returns their
- * number. */
-static unsigned list_farthest(const struct programs *e, const struct side *side, uint16_t *out)
-{
-    const struct support_vertices *vertices = &side->view->vertices;
-    double n[FMB_DIM_MAX], most = -INFINITY;
-    unsigned listed = 0;
-    const double error = round_direction(e, side, n);
-    if (side->count == vertices->count)
-        return support_list(vertices, n, support_max(vertices, n).value - 2.1 * error, out);
-    for (unsigned k = 0; k < side->count; k++)
-        most = fmax(most, support_value(vertices, n, side->face[k]));
-    for (unsigned k = 0; k < side->count; k++) {
-        out[listed] = side->face[k];
-        listed += !(support_value(vertices, n, side->face[k]) < most - 2.1 * error);
-    }
-    return listed;
 }
 
 /* e->body := n in body coordinates, times a positive factor. */
@@ -331,12 +305,14 @@ static unsigned price_side(struct programs *e, int f, bool reduce)
 {
     struct side *side = &e->side[f];
     uint16_t listed[FMB_HULL_VERTICES_MAX];
+    double n[FMB_DIM_MAX];
     unsigned kept = 0, best = side->face[0];
     bool known = false; /* e->best is the value of best */
     turn_back(e, side, e->normal[f]);
     if (integer_is_zero(e->body))
         return best;
-    const unsigned count = list_farthest(e, side, listed);
+    round_direction(e, n);
+    const unsigned count = support_view_list(side->view, n, side->face, side->count, listed);
     for (unsigned k = 0; k < count; k++) {
         const unsigned i = listed[k];
         int order = 1;

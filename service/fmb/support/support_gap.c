@@ -4,13 +4,7 @@
  *
  * Lower bound of a distance: support_search.c. On the grid it is taken from support_farthest().
  *
- * Upper bound. A witness point is a sum of weights times vertices R v, of the position and of the
- * displacement times a fraction of the window. Each R v is off by at most 18.3 u r, and by the
- * slack (support_pair.h); weights sum to 1 within 8 u, negative ones of rounding included; each
- * term passes at most 8 roundings. So the point is within 35 u of the sum of its lengths, and the
- * slack, of a point of the frame: less than 2^-47 far for both frames. The fraction of the window
- * is off by 2 u or, in the shortest windows, by 2^-1074 over the duration: "late" bounds how far
- * that moves the frames. */
+ * Upper bound of a distance: support_witness.c. */
 #include "support_gap.h"
 
 #include "integer_simplex.h"
@@ -72,37 +66,6 @@ static bool is_tight(const struct support_gap *gap, const struct fmb_gap *out)
 
 /* ---- Distance ---- */
 
-/* Sets the time, the witness points and the upper bound. */
-static void set_witness(const struct support_gap *gap, const struct support_nearest *nearest,
-                        struct fmb_gap *out)
-{
-    double apart[FMB_DIM_MAX], late = 0;
-    for (int f = 0; f < 2; f++) {
-        double at[FMB_DIM_MAX] = {0};
-        late = 0;
-        for (unsigned c = 0; c < nearest->simplex.count; c++) {
-            const struct support_column column = nearest->simplex.vertex[c].column;
-            const double weight = nearest->weight[c];
-            double vertex[FMB_DIM_MAX];
-            support_place(&gap->pair->view[f], column.vertex[f], vertex);
-            late += column.end ? weight : 0;
-            for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-                at[axis] += weight * vertex[axis];
-        }
-        late = late < 0 ? 0 : late > 1 ? 1 : late;
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            out->witness[f][axis] =
-                gap->position[f][axis] + (late * gap->displacement[f][axis] + at[axis]);
-    }
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        apart[axis] = out->witness[1][axis] - out->witness[0][axis];
-    const double slack = gap->pair->view[0].slack + gap->pair->view[1].slack;
-    const double error = 0x1p-47 * gap->far + gap->late + slack + 0x1p-1000;
-    out->has_witness = true;
-    out->time = late * gap->duration;
-    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + error) * (1 + 0x1p-49);
-}
-
 /* Sets the lower bound that the direction proves. */
 static void set_lower(const struct support_gap *gap, struct fmb_gap *out)
 {
@@ -119,7 +82,7 @@ static enum gap_outcome distance(const struct support_gap *gap,
         return nearest->outcome;
     memcpy(out->direction, nearest->direction, sizeof out->direction);
     out->bounds[0] = nearest->least - 4 * gap->pair->error;
-    set_witness(gap, nearest, out);
+    support_witness(gap, nearest, out);
     return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
 }
 
@@ -171,7 +134,7 @@ static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct f
     else
         integer_direction(simplex.normal, out->direction);
     set_lower(gap, out);
-    set_witness(gap, &nearest, out);
+    support_witness(gap, &nearest, out);
     integer_simplex_each(&simplex, mpz_clear);
     return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
 }

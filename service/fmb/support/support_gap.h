@@ -26,6 +26,10 @@ struct support_gap {
     double scale; /* the grid of a mesh: a power of two */
 };
 
+/* Sets the witness points of a point of D, their time, and the upper bound of the distance. */
+void support_witness(const struct support_gap *gap, const struct support_nearest *nearest,
+                     struct fmb_gap *out);
+
 /* The depth of D, in steps. If D does not contain the origin, up to the width of an enclosure, the
  * depth is 0. It points to gap and into itself: not to be copied. */
 struct support_depth {

@@ -93,6 +93,38 @@ struct support support_view_farthest(const struct support_view *view, const doub
     return support_max(&view->vertices, direction);
 }
 
+/* Vertices whose values differ by more than this many times the bound on the error of a value are
+ * ordered as their exact values are: twice the error, and the rounding of the difference, which is
+ * below u |v| / 9. */
+#define SUPPORT_ORDERED 2.1
+
+/* The bound on the error of a value. n is off by 2 u of each coordinate, and the product with a
+ * vertex v by 3.01 u of the magnitudes of its terms (support.h): with |n| < 1/9 by less than 5.01/9
+ * u |v| + slack + 2^-1000. |v| is at most the reach, which may be infinite, and less than
+ * sqrt(3) 2^1024, since coordinates are finite: 2^972 bounds the first term then. Coordinates of a
+ * frame that is not a hull are sums, which may overflow; its slack is then infinite, and all
+ * vertices are listed. */
+unsigned support_view_list(const struct support_view *view, const double n[FMB_DIM_MAX],
+                           const uint16_t *face, unsigned count, uint16_t *out)
+{
+    const struct support_vertices *vertices = &view->vertices;
+    const double error = fmin(unit_roundoff * view->reach, 0x1p972) + view->slack + 0x1p-1000;
+    double most = -INFINITY;
+    unsigned listed = 0;
+    if (count == vertices->count)
+        return support_list(vertices, n, support_max(vertices, n).value - SUPPORT_ORDERED * error,
+                            out);
+    for (unsigned k = 0; k < count; k++)
+        most = fmax(most, support_value(vertices, n, face[k]));
+    for (unsigned k = 0; k < count; k++) {
+        const double value = support_value(vertices, n, face[k]);
+        CHECK_BOUND(SUPPORT_ORDERED, false, most - value, SUPPORT_ORDERED * error);
+        out[listed] = face[k];
+        listed += !(value < most - SUPPORT_ORDERED * error);
+    }
+    return listed;
+}
+
 /* ---- Pairs ---- */
 
 bool support_order(const struct frame_pair *frames, struct frame_pair *out)

@@ -98,6 +98,15 @@ void support_point(const struct support_pair *pair, struct support_column column
  * at most |n| (22 u reach + slack). */
 struct support support_view_farthest(const struct support_view *view, const double n[FMB_DIM_MAX]);
 
+/* Lists, in the order of the face, its vertices that may have the greatest n . v of the face.
+ *
+ * In:  n     body coordinates, |n| < 1/9, each off by at most 2^-52 of itself and 2^-1074
+ *      face  [count] vertices of the view; if count is that of the view, all of them, ascending
+ *
+ * Returns their number. */
+unsigned support_view_list(const struct support_view *view, const double n[FMB_DIM_MAX],
+                           const uint16_t *face, unsigned count, uint16_t *out);
+
 /* out := R v, a vertex without its position, in world coordinates. */
 void support_place(const struct support_view *view, unsigned vertex, double out[FMB_DIM_MAX]);
 
