@@ -68,6 +68,10 @@ static struct constant constants[] = {
     /* Sums of weights, by which the points of a cuboid and of a simplex are off. */
     {"GAP_WITNESS_ROUNDING", 0, 1, 4},
     {"GAP_SLIP", 1},
+    /* |e|^2 >= 2^-7 (|A_p|^2 + |A_q|^2), so these are at most 8.51 times as long as e. The sum of
+     * two products, each at most 2 / sqrt(3) times its lengths, is divided by at least 2^-4; |n| is
+     * off by (14.1 2^8 + 1) u / 2 of itself. */
+    {"GAP_BOUNDS_MARGIN", 0, 16 * 2 * 8.51L * 1.154700539L, 1806},
     {"BOX_PLACE_ROUNDING_EXACT", BOX_PLACE_ROUNDING_EXACT, 0, 0, AT_HAND},
     {"SUPPORT_ROUNDING", 0, 0, 0, AT_HAND},
     /* Relative to the error of a value, u reach. Both values are at most reach / 9, and the
@@ -462,9 +466,9 @@ bool check_failed(int index)
 static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
-    "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), bounds of normals\n"
-    "(gap_bounds.c), depths of hulls (support_depth.c), and what is done in integers. In\n"
-    "the filter and in gaps frames count as given, without errors.\n";
+    "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), depths of hulls\n"
+    "(support_depth.c), and what is done in integers. In the filter and in gaps frames count\n"
+    "as given, without errors.\n";
 
 /* A fraction of a constant. */
 static void print_share(FILE *out, long double share)

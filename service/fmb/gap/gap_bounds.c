@@ -13,19 +13,22 @@
  * and with M_k . e and the other sign for those of B. So two edges f go side by side, and n is not
  * needed: |n|^2 = |e|^2 |f|^2 - (e . f)^2.
  *
- * Accuracy. These are sums of triple products, each off by less than 20 u times the lengths of its
- * vectors; where A_p and A_q stand for e, by as much more as they are longer. Edges that are more
- * than 2^4 times shorter have no bound. So |n| f(n) is off by less than 2^-44 |e| |f| R. Where it
- * is negative its quotient with m = max(|n|, 2^-4 |e| |f|) bounds f(n), and is off by less than
- * 2^-40 R; m^2 by 2^-42 of itself. A bound is compared with the greatest f less 2^-38 R. All are
- * squared: R within 2^60 and 2^-60, and edges longer than 2^-100, do not let that overflow, or
- * underflow by more than 2^-600. */
+ * Accuracy, with u = 2^-53. These are sums of triple products, each off by less than 20 u times the
+ * lengths of its vectors; where A_p and A_q stand for e, by as much more as they are longer. Edges
+ * that are more than 2^4 times shorter have no bound. So |n| f(n) is off by less than
+ * 2^-44 |e| |f| R. Where it is negative its quotient with m = max(|n|, 2^-4 |e| |f|) bounds f(n),
+ * and is off by less than 2^-40 R. The squares in |n|^2 are off by 14.1 u |e|^2 |f|^2, m^2 by less
+ * than 2^-41 of itself. Together that is less than 2^-39 R, the margin. Bounds are squared: R
+ * within 2^60 and 2^-60, and edges longer than 2^-100, do not let that overflow, or underflow by
+ * more than 2^-600. */
 #include "gap_bounds.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { GROUPS = GAP_EDGES / 2 };
+
+#define GAP_BOUNDS_MARGIN 0x1p-39 /* relative to R */
 
 /* What bounds are made of. */
 struct products {
@@ -120,6 +123,10 @@ INLINE void add_bound(lanes middle, struct extent extent, lanes square, lanes mo
 {
     const lanes above = lanes_max(middle + extent.low, -(middle + extent.high));
     const lanes best = lanes_min(above, lanes_of(0));
+    CHECK_BOUND(GAP_BOUNDS_MARGIN, !(most[0] > 0 && most[0] < INFINITY), above[0],
+                0x1p-4 * out->margin * sqrt(most[0]));
+    CHECK_BOUND(GAP_BOUNDS_MARGIN, !(most[1] > 0 && most[1] < INFINITY), above[1],
+                0x1p-4 * out->margin * sqrt(most[1]));
     out->square[out->count++] = best * best / lanes_max(square, 0x1p-8 * most);
 }
 
@@ -200,6 +207,7 @@ INLINE void bound_all(const struct gap_edges *edges, const bool a, const bool b,
 void gap_bounds_set(const struct gap_edges *edges, struct gap_bounds *out)
 {
     const struct gap_pair *pair = edges->pair;
+    out->margin = GAP_BOUNDS_MARGIN * pair->reach;
     out->count = 0;
     if (pair->simplex[0] && pair->simplex[1])
         bound_all(edges, true, true, out);

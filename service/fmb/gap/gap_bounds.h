@@ -26,12 +26,10 @@ struct gap_edges {
     struct gap_edge of[2][GAP_EDGES], drift; /* of a negated */
 };
 
-/* Relative to the reach: a bound and an f that differ by less may be equal. */
-#define GAP_BOUNDS_MARGIN 0x1p-38
-
-/* Bounds of f, each negative and squared: f is not above minus the root by more than 2^-39 of the
- * reach. 0: none; infinite or NaN: the normal is 0. */
+/* Bounds of f, each negative and squared: f is not above minus the root by more than the margin.
+ * 0: none; infinite or NaN: the normal is 0. */
 struct gap_bounds {
+    double margin;
     int count;
     /* Faces of a, of b, GAP_FACES each; then each edge of a with all edges of b: 6 of a simplex, 4
      * of a cuboid. */

@@ -237,13 +237,12 @@ static int first_of(const struct gap_bounds *bounds)
 /* The normal with the least bound, then all whose bound is not below its f. */
 static void add_space(struct depth *depth)
 {
-    const double reach = depth->edges.pair->reach;
     struct gap_bounds bounds;
     gap_bounds_set(&depth->edges, &bounds);
     const int first = first_of(&bounds);
     if (first >= 0)
         add_number(depth, first);
-    const double most = (GAP_BOUNDS_MARGIN * reach - depth->greatest) * PREPARED_MARGIN;
+    const double most = (bounds.margin - depth->greatest) * PREPARED_MARGIN;
     const lanes limit = lanes_of(most * most);
     for (int i = 0; i < bounds.count; i++) {
         const unsigned bits = lanes_mask_bits(bounds.square[i] <= limit);

@@ -67,8 +67,9 @@
  *
  * Finite: ties in the choice of the leaving column are broken as if the origin were at (e, e^2,
  * ...) for a small e > 0 (the lexicographic rule; Dantzig, Orden and Wolfe, 1955): by C_i . q, then
- * by the coordinates of C_i in order. No basis repeats, and there are finitely many. The optimum
- * does not depend on the path, so neither does the answer.
+ * by the coordinates of C_i in order. The first basis has to contain the origin in this order too
+ * (passes()). Then no basis repeats, and there are finitely many. The optimum does not depend on
+ * the path, so neither does the answer.
  *
  * Pricing. The direction is turned into body coordinates exactly and then rounded. One scan in
  * doubles leaves the vertices within the bound of the greatest value; only these are evaluated
