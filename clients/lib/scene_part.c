@@ -60,8 +60,9 @@ size_t part_result_bytes(const struct part *part, const struct fmb_scene *scene)
 {
     if (part->single)
         return SINGLE_RESULT_BYTES;
-    const size_t numbers =
-        (scene->want & FMB_WANT_TIMES ? 2 : 0) + (scene->want & FMB_WANT_BOX ? 2 * FMB_DIM_MAX : 0);
+    const size_t numbers = (scene->want & FMB_WANT_TIMES ? 2 : 0) +
+                           (scene->want & FMB_WANT_BOX ? 2 * FMB_DIM_MAX : 0) +
+                           (scene->want & FMB_WANT_POINT ? 1 + FMB_DIM_MAX : 0);
     const size_t contact = 1 + sizeof(double) * numbers +
                            (part->which == FMB_PAIRS_LISTED ? 0 : WIRE_PAIR_BYTES) +
                            (wants_gaps(scene) ? (size_t) wire_gap_bytes(FMB_DIM_MAX, true) : 0);

@@ -12,7 +12,8 @@ static void decide(const struct fmb_scene *scene, struct fmb_client_answer *out,
     const struct fmb_method *method = scene->method ? scene->method : fmb_method_default();
     const struct fmb_placement *a = &scene->placements[out->a], *b = &scene->placements[out->b];
     const bool gap = scene->want & FMB_WANT_GAP || scene->margin > 0;
-    const unsigned want = (scene->want & FMB_WANT_BOX) | (gap ? FMB_WANT_GAP : 0);
+    const unsigned want =
+        (scene->want & (FMB_WANT_BOX | FMB_WANT_POINT)) | (gap ? FMB_WANT_GAP : 0);
     size_t length = 0;
     enum fmb_status status = fmb_decide(method, a, b, scene->duration, want, &out->answer);
     if (!(scene->want & FMB_WANT_GAP))

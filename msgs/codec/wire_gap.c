@@ -63,10 +63,10 @@ static bool set_gap(unsigned char verdict, const double *direction, const double
             return false;
         out->direction[axis] = direction[axis];
     }
-    if (!separated)
-        return verdict >= FMB_TOUCHING && are_none(witness, points);
+    if (!separated && are_none(witness, points))
+        return verdict >= FMB_TOUCHING;
     set_witness(witness, dim, out);
-    return is_witness(witness, points);
+    return (separated || verdict == FMB_OVERLAPPING) && is_witness(witness, points);
 }
 
 /* Sets the frames. Returns whether they are not negative, and 0 if there is no gap. */
@@ -78,8 +78,8 @@ static bool set_frames(const unsigned char *bytes, struct fmb_gap *out)
     return out->frame[0] <= (unsigned) most && out->frame[1] <= (unsigned) most;
 }
 
-int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
-                   int32_t witnesses, bool *names_frames, struct fmb_gap *out)
+int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count, bool padded,
+                   bool *names_frames, struct fmb_gap *out)
 {
     const unsigned char *bound, *direction, *witness, *frame;
     const int64_t bounds = cursor_list(cursor, 8, &bound);
@@ -89,7 +89,8 @@ int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t 
     const int dim = bounds == 0 ? 0 : directions == 2 * (int64_t) count ? 2 : 3;
     const int points = dim > 0 ? 1 + 2 * dim : 0;
     if (bounds != (dim > 0 ? 2 * (int64_t) count : 0) || count * (dim > 0) > QUERY_GAPS_MAX ||
-        directions != (int64_t) dim * count || numbers != (int64_t) points * witnesses ||
+        directions != (int64_t) dim * count ||
+        (numbers != (int64_t) points * count && (padded || numbers != 0)) ||
         (frames > 0 && frames != (dim > 0 ? 2 * (int64_t) count : 0)))
         cursor_fail(cursor, "gaps that do not go with the verdicts");
     for (int32_t i = 0; i < count && dim > 0 && !cursor->error; i++) {
@@ -99,8 +100,9 @@ int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t 
         memset(&out[i], 0, sizeof out[i]);
         take_numbers(bound + 16 * i, out[i].bounds, 2);
         take_numbers(direction + 8 * dim * i, unit, dim);
-        take_numbers(witness + 8 * points * i, point, witnesses > 0 ? points : 0);
+        take_numbers(witness + 8 * points * i, point, numbers > 0 ? points : 0);
         if (!set_gap(verdict[i], unit, point, dim, &out[i]) ||
+            (!padded && out[i].has_witness != (numbers > 0)) ||
             (frames > 0 && !set_frames(frame + 4 * i, &out[i])))
             cursor_fail(cursor, "a gap that is no gap");
     }
@@ -117,10 +119,10 @@ static void write_numbers(struct writer *writer, bool some, const double *number
         writer_double(writer, some ? number[i] : NAN);
 }
 
-void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
-                     int32_t witnesses, bool names_frames, int dim)
+void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count, bool padded,
+                     bool names_frames, int dim)
 {
-    const int32_t gaps = dim > 0 ? count : 0, points = dim > 0 ? witnesses : 0;
+    const int32_t gaps = dim > 0 ? count : 0, points = padded || gap->has_witness ? gaps : 0;
     writer_int32(writer, 2 * gaps);
     for (int32_t i = 0; i < gaps; i++)
         write_numbers(writer, query_has_gap(&gap[i]), gap[i].bounds, 2);

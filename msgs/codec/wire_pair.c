@@ -100,8 +100,8 @@ static void read_point(struct cursor *cursor, struct pair_result *out)
 static void read_gap(struct cursor *cursor, struct pair_result *out)
 {
     const unsigned char verdict = (unsigned char) out->answer.verdict;
-    const int dim = wire_read_gaps(cursor, &verdict, 1, verdict == FMB_SEPARATED,
-                                   &out->names_frames, &out->answer.gap);
+    const int dim =
+        wire_read_gaps(cursor, &verdict, 1, false, &out->names_frames, &out->answer.gap);
     out->answer.has_gap = dim > 0;
     if (dim > 0 && ((out->dim > 0 && out->dim != dim) || !query_has_gap(&out->answer.gap)))
         cursor_fail(cursor, "no gap, or one of another dimension");
@@ -187,8 +187,8 @@ size_t wire_write_pair_result(const struct pair_result *result, unsigned char ou
     writer_doubles(&writer, result->answer.contact, result->answer.has_contact ? 2 : 0);
     write_box(&writer, result);
     writer_doubles(&writer, result->answer.point, result->answer.has_point ? 1 + result->dim : 0);
-    wire_write_gaps(&writer, &result->answer.gap, 1, result->answer.gap.has_witness,
-                    result->names_frames, result->answer.has_gap ? result->dim : 0);
+    wire_write_gaps(&writer, &result->answer.gap, 1, false, result->names_frames,
+                    result->answer.has_gap ? result->dim : 0);
     wire_write_text(&writer, result->certificate);
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);

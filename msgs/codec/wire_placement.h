@@ -56,14 +56,14 @@ static inline void wire_write_text(struct writer *writer, const char *text)
 bool wire_is_point(const double *point, int count);
 
 /* Reads the lists of gaps: bounds, directions, witnesses, frames. There is a gap for each of count
- * verdicts, or for none; witnesses is the number of gaps with a witness in the encoding (it depends
- * on the message type, and is 0 or count). *names_frames: whether frames are present. Returns the
- * dimension of the gaps; 0: there are none. */
-int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count,
-                   int32_t witnesses, bool *names_frames, struct fmb_gap *out);
+ * verdicts, or for none. padded: a gap without witness points has NaN for them, as in scenes;
+ * otherwise it has no numbers, and count is 1. *names_frames: whether frames are present. Returns
+ * the dimension of the gaps; 0: there are none. */
+int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count, bool padded,
+                   bool *names_frames, struct fmb_gap *out);
 
 /* Writes the lists of gaps. On input: as above; dim 0: there are none. */
-void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count,
-                     int32_t witnesses, bool names_frames, int dim);
+void wire_write_gaps(struct writer *writer, const struct fmb_gap *gap, int32_t count, bool padded,
+                     bool names_frames, int dim);
 
 #endif

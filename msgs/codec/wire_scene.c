@@ -178,8 +178,7 @@ static void read_points(struct cursor *cursor, struct scene_result *out)
 static void read_gaps(struct cursor *cursor, struct scene_result *out)
 {
     const int32_t count = out->verdict_count;
-    const int dim =
-        wire_read_gaps(cursor, out->verdict, count, count, &out->names_frames, out->gap);
+    const int dim = wire_read_gaps(cursor, out->verdict, count, true, &out->names_frames, out->gap);
     out->has_gaps = dim > 0;
     if (dim > 0 && out->dim > 0 && dim != out->dim)
         cursor_fail(cursor, "gaps of another dimension than boxes or points");
@@ -256,8 +255,8 @@ size_t wire_write_scene_result(const struct scene_result *result,
     writer_doubles(&writer, result->times, result->has_times ? 2 * contacts : 0);
     writer_doubles(&writer, result->boxes, result->has_boxes ? 2 * result->dim * contacts : 0);
     writer_doubles(&writer, result->points, result->has_points ? (1 + result->dim) * contacts : 0);
-    wire_write_gaps(&writer, result->gap, result->verdict_count, result->verdict_count,
-                    result->names_frames, result->has_gaps ? result->dim : 0);
+    wire_write_gaps(&writer, result->gap, result->verdict_count, true, result->names_frames,
+                    result->has_gaps ? result->dim : 0);
     writer_int64(&writer, result->compute_ns);
     return writer_end(&writer, out);
 }

@@ -130,7 +130,7 @@ static bool check_pair(struct answer_job *job)
     struct check_context *context = at(job, -1);
     return check_ids(context, query->client_id, query->sequence_number) &&
            check_request(context, query->duration, query->method, query->want,
-                         FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP) &&
+                         FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP | FMB_WANT_POINT) &&
            check_placements(job) &&
            (query->placement[0].body.dim == query->placement[1].body.dim ||
             check_refuse(at(job, -1), FMB_DIMENSIONS_DIFFER, "dim", NULL));
@@ -283,7 +283,7 @@ static bool check_scene(struct answer_job *job)
     return check_ids(context, query->client_id, query->sequence_number) &&
            check_margin(context, query) &&
            check_request(context, query->duration, query->method, want,
-                         FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP) &&
+                         FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT) &&
            check_counts(context, query) && check_which(context, query) && check_placements(job) &&
            check_indices(at(job, -1), "indices", query->pair, query->index_count / 2,
                          query->placement_count) &&
@@ -441,7 +441,8 @@ static enum answer_stage complete_pair(struct answer_job *job, enum fmb_status s
                  fmb_status_text(result->status));
     } else {
         result->method = method->number;
-        result->dim = answer->has_box || answer->has_gap ? job->placements[0].body.dim : 0;
+        const bool uses_dim = answer->has_box || answer->has_point || answer->has_gap;
+        result->dim = uses_dim ? job->placements[0].body.dim : 0;
         result->names_frames = answer->has_gap && job->several_frames;
     }
     return complete(job);
@@ -473,6 +474,7 @@ static bool decide_at_once(struct answer_job *job)
     static const unsigned pair[1][2] = {{0, 1}};
     const struct pair_query *query = &job->pair;
     const bool box = query->want & FMB_WANT_BOX, gap = query->want & FMB_WANT_GAP;
+    const bool point = query->want & FMB_WANT_POINT;
     struct fmb_answer *answer = &job->pair_result.answer;
     struct fmb_prepared frames[2];
     unsigned char verdict;
@@ -488,6 +490,7 @@ static bool decide_at_once(struct answer_job *job)
                                     .verdicts = &verdict,
                                     .contacts = &answer->contact,
                                     .boxes = box ? &answer->box : NULL,
+                                    .points = point ? &answer->point : NULL,
                                     .gaps = gap ? &answer->gap : NULL,
                                     .open = &open,
                                     .open_count = &open_count};
@@ -499,10 +502,12 @@ static bool decide_at_once(struct answer_job *job)
     if (verdict < FMB_TOUCHING) { /* no NAN */
         memset(answer->contact, 0, sizeof answer->contact);
         memset(answer->box, 0, sizeof answer->box);
+        memset(answer->point, 0, sizeof answer->point);
     }
     answer->verdict = (enum fmb_verdict) verdict;
     answer->has_contact = verdict >= FMB_TOUCHING;
     answer->has_box = answer->has_contact && box;
+    answer->has_point = answer->has_contact && point;
     answer->has_gap = gap;
     return true;
 }
@@ -547,9 +552,10 @@ static void begin_answers(struct answer_job *job)
     result->names_pairs = query->which != FMB_PAIRS_LISTED;
     result->has_times = query->want & FMB_WANT_TIMES;
     result->has_boxes = query->want & FMB_WANT_BOX && method->boxes;
+    result->has_points = query->want & FMB_WANT_POINT && method->certain;
     result->has_gaps = query->want & FMB_WANT_GAP || query->margin > 0;
     result->names_frames = result->has_gaps && job->several_frames;
-    const bool uses_dim = result->has_boxes || result->has_gaps;
+    const bool uses_dim = result->has_boxes || result->has_points || result->has_gaps;
     result->dim = uses_dim && query->placement_count > 0 ? query->placement[0].body.dim : 0;
     job->capacity = QUERY_BYTES_MAX - WIRE_SCENE_RESULT_BYTES - HANDLE_BYTES * result->handle_count;
 }
@@ -631,6 +637,8 @@ static long size_of(const struct scene_result *result, unsigned char verdict)
         size += 2 * (long) sizeof(double);
     if (verdict >= FMB_TOUCHING && result->has_boxes)
         size += 2 * result->dim * (long) sizeof(double);
+    if (verdict >= FMB_TOUCHING && result->has_points)
+        size += (1 + result->dim) * (long) sizeof(double);
     if (result->has_gaps)
         size += wire_gap_bytes(result->dim, result->names_frames);
     return size;
@@ -645,6 +653,10 @@ static void append_contact(struct scene_result *result, const struct fmb_scene_a
     for (int i = 0; i < 2 * result->dim && result->has_boxes; i++)
         result->boxes[2 * result->dim * contact + i] =
             answers->boxes[k][i / result->dim][i % result->dim];
+    const int numbers = 1 + result->dim;
+    if (result->has_points)
+        memcpy(&result->points[numbers * contact], answers->points[k],
+               (size_t) numbers * sizeof(double));
 }
 
 /* Appends answer k to the result. Returns false, and changes nothing, if it does not fit. */
@@ -689,7 +701,8 @@ static size_t append_all(struct answer_job *job, const struct fmb_scene_answers 
 {
     const struct scene_result *result = &job->result;
     size_t k = 0;
-    if (!result->names_pairs && !result->has_times && !result->has_boxes && !result->has_gaps)
+    if (!result->names_pairs && !result->has_times && !result->has_boxes && !result->has_points &&
+        !result->has_gaps)
         return append_verdicts(job, answers);
     while (k < answers->count && append(job, answers, k))
         k++;

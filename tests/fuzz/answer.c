@@ -56,7 +56,7 @@ static void check_certificate(const struct fmb_placement place[2], double durati
 
 static unsigned want_of(int32_t want)
 {
-    return (unsigned) want & (FMB_WANT_BOX | FMB_WANT_GAP);
+    return (unsigned) want & (FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT);
 }
 
 /* Gaps are given by methods that are never wrong. */
@@ -69,9 +69,9 @@ static bool good_gaps(int32_t method, bool wanted)
 
 static bool is_good_pair(const struct pair_query *query)
 {
-    return model_good_request(query->client_id, query->sequence_number, query->duration,
-                              query->method, query->want,
-                              FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP) &&
+    return model_good_request(
+               query->client_id, query->sequence_number, query->duration, query->method,
+               query->want, FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP | FMB_WANT_POINT) &&
            good_gaps(query->method, query->want & FMB_WANT_GAP) &&
            model_good_placement(&query->placement[0]) &&
            model_good_placement(&query->placement[1]) &&
@@ -116,8 +116,9 @@ static void check_decided(const struct pair_query *query, const struct pair_resu
     FUZZ_CHECK(result->status == status);
     FUZZ_CHECK(query_same_answer(&result->answer, &answer));
     FUZZ_CHECK(result->method == (status == FMB_OK ? method->number : 0));
-    FUZZ_CHECK(result->dim ==
-               (answer.has_box || answer.has_gap ? query->placement[0].body.dim : 0));
+    FUZZ_CHECK(
+        result->dim ==
+        (answer.has_box || answer.has_point || answer.has_gap ? query->placement[0].body.dim : 0));
     FUZZ_CHECK(result->names_frames ==
                (answer.has_gap && (made[0].body.frame_count > 1 || made[1].body.frame_count > 1)));
     if (result->certificate)
@@ -289,7 +290,7 @@ static bool is_good_scene(const struct scene_query *query, int total)
 {
     return model_good_request(query->client_id, query->sequence_number, query->duration,
                               query->method, query->want,
-                              FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP) &&
+                              FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT) &&
            query->margin >= 0 && isfinite(query->margin) &&
            good_gaps(query->method, wants_gaps(query)) && good_which(query, total) &&
            good_placements(query) && good_pairs(query);
@@ -348,16 +349,20 @@ struct reading {
     int verdicts, contacts;
 };
 
-/* The times and the box of the next contact. */
+/* The times, the box and the point of the next contact. */
 static void check_contact(struct reading *reading, const struct fmb_answer *answer)
 {
     const struct scene_result *result = reading->result;
     const int contact = reading->contacts++, dim = reading->query->placement[0].body.dim;
     const double *times = &result->times[2 * contact];
     const double *box = &result->boxes[2 * dim * contact];
+    const double *point = &result->points[(1 + dim) * contact];
     FUZZ_CHECK(contact < result->contact_count);
     if (result->has_times)
         FUZZ_CHECK(answer->has_contact && same_doubles(times, answer->contact, 2));
+    if (result->has_points)
+        FUZZ_CHECK(result->dim == dim && answer->has_point &&
+                   same_doubles(point, answer->point, 1 + (size_t) dim));
     if (!result->has_boxes)
         return;
     FUZZ_CHECK(result->dim == dim && answer->has_box);
@@ -413,6 +418,7 @@ static void check_answers(const struct scene_query *query, const struct scene_re
         several = several || made[i].body.frame_count > 1;
     FUZZ_CHECK(result->names_frames == (result->has_gaps && several));
     FUZZ_CHECK(result->has_boxes == (some && method->boxes && query->want & FMB_WANT_BOX));
+    FUZZ_CHECK(result->has_points == (some && method->certain && query->want & FMB_WANT_POINT));
     for (int k = query->first_pair; k < result->end_pair; k++)
         check_scene_pair(&reading, pair[k]);
     FUZZ_CHECK(reading.verdicts == result->verdict_count &&

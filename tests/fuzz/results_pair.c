@@ -75,8 +75,9 @@ bool results_is_gap(int verdict, int dim, const struct results_gap *gap)
         return good && verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
     for (int i = 1; i < 1 + 2 * dim; i++)
         good = good && gap->witness[i] == gap->witness[i];
-    return good && verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED && gap->witness[0] >= 0 &&
-           gap->witness[0] <= DBL_MAX;
+    good = good && (verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED ||
+                    verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING);
+    return good && gap->witness[0] >= 0 && gap->witness[0] <= DBL_MAX;
 }
 
 bool results_same_gap(const struct fmb_gap *read, int dim, const struct results_gap *gap)
@@ -95,9 +96,8 @@ bool results_same_gap(const struct fmb_gap *read, int dim, const struct results_
 
 static struct results_gap gap_of(const fmb_msgs_pair_result_t *message)
 {
-    const bool separated = message->verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED;
     return (struct results_gap){message->gap, message->direction,
-                                separated ? message->witness : NULL,
+                                message->num_witness ? message->witness : NULL,
                                 message->num_gap_frames ? message->gap_frames : NULL};
 }
 

@@ -65,10 +65,10 @@ static int32_t dim_of(const fmb_msgs_scene_result_t *message)
 static struct results_gap gap_of(const fmb_msgs_scene_result_t *message, int32_t i)
 {
     const int32_t dim = dim_of_gaps(message), points = 1 + 2 * dim;
-    return (struct results_gap){
-        message->gaps + 2 * i, message->directions + dim * i,
-        message->verdicts[i] == SEPARATED ? message->witnesses + points * i : NULL,
-        message->num_gap_frames ? message->gap_frames + 2 * i : NULL};
+    const double *witness = message->witnesses + points * i;
+    return (struct results_gap){message->gaps + 2 * i, message->directions + dim * i,
+                                results_are_none(witness, points) ? NULL : witness,
+                                message->num_gap_frames ? message->gap_frames + 2 * i : NULL};
 }
 
 /* Neither near nor a contact. */
@@ -97,9 +97,7 @@ static bool are_gaps(const fmb_msgs_scene_result_t *message)
                 dim_of(message) == dim;
     for (int32_t i = 0; i < verdicts && good; i++) {
         const struct results_gap gap = gap_of(message, i);
-        const double *witness = message->witnesses + points * i;
-        good = is_far(message, i) || (results_is_gap(message->verdicts[i], dim, &gap) &&
-                                      (gap.witness || results_are_none(witness, points)));
+        good = is_far(message, i) || results_is_gap(message->verdicts[i], dim, &gap);
     }
     return good;
 }

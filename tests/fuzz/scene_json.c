@@ -177,7 +177,7 @@ static void check_answer(void *user, const struct fmb_client_answer *of)
 {
     struct decided *decided = user;
     const struct fmb_scene *scene = decided->scene;
-    const unsigned want = FMB_WANT_BOX | (scene->margin > 0 ? FMB_WANT_GAP : 0);
+    const unsigned want = FMB_WANT_BOX | FMB_WANT_POINT | (scene->margin > 0 ? FMB_WANT_GAP : 0);
     struct fmb_answer answer;
     decided->count++;
     FUZZ_CHECK(of->status == FMB_OK && fmb_verdict_name((int) of->answer.verdict));
@@ -196,7 +196,7 @@ static void check_decided(struct owned_scene *owner)
         frames += scene->placements[i].body->frame_count;
     if (scene_count_pairs(owner) > DECIDED_PAIRS_MAX || frames > DECIDED_FRAMES_MAX)
         return;
-    scene->want = FMB_WANT_BOX;
+    scene->want = FMB_WANT_BOX | FMB_WANT_POINT;
     answers_local(owner, check_answer, &decided);
     FUZZ_CHECK(decided.count == scene_count_pairs(owner));
 }

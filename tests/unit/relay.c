@@ -464,7 +464,7 @@ static void decide(const struct fmb_scene *scene, const unsigned pair[2], struct
 {
     const struct fmb_placement *a = &scene->placements[pair[0]], *b = &scene->placements[pair[1]];
     const bool all_gaps = scene->want & FMB_WANT_GAP;
-    const unsigned want = (scene->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) |
+    const unsigned want = (scene->want & (FMB_WANT_BOX | FMB_WANT_POINT)) |
                           (all_gaps || scene->margin > 0 ? FMB_WANT_GAP : 0);
     struct fmb_answer answer = {.verdict = FMB_SEPARATED};
     if (is_ignored(scene, pair[0], pair[1]))
@@ -523,6 +523,8 @@ void relay_check(void *user, const struct fmb_client_answer *answer)
     assert_int_equal(is->has_box, should->has_box);
     assert_memory_equal(is->contact, should->contact, sizeof is->contact);
     assert_memory_equal(is->box, should->box, sizeof is->box);
+    assert_int_equal(is->has_point, should->has_point);
+    assert_memory_equal(is->point, should->point, sizeof is->point);
     assert_int_equal(is->has_gap, should->has_gap);
     assert_true(query_same_gap(&is->gap, &should->gap));
 }

@@ -171,7 +171,7 @@ enum fmb_status scene_decide(const struct scene_query *query, const unsigned pai
     static struct truth_body body[2];
     const struct fmb_placement a = place(&query->placement[pair[0]], &body[0]);
     const struct fmb_placement b = place(&query->placement[pair[1]], &body[1]);
-    const unsigned want = FMB_WANT_BOX | (wants_gaps(query) ? FMB_WANT_GAP : 0);
+    const unsigned want = FMB_WANT_BOX | FMB_WANT_POINT | (wants_gaps(query) ? FMB_WANT_GAP : 0);
     return fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, answer);
 }
 
@@ -218,6 +218,14 @@ static void assert_box(const struct reading *reading, const struct fmb_answer *a
         assert_memory_equal(box + side * dim, answer->box[side], (size_t) dim * sizeof *box);
 }
 
+static void assert_point(const struct reading *reading, const struct fmb_answer *answer)
+{
+    const int numbers = 1 + reading->result->dim;
+    assert_true(answer->has_point);
+    assert_memory_equal(&reading->result->points[numbers * reading->contact], answer->point,
+                        (size_t) numbers * sizeof(double));
+}
+
 static bool is_near(const struct scene_query *query, const struct fmb_answer *answer)
 {
     return query->margin > 0 && answer->verdict == FMB_SEPARATED &&
@@ -254,6 +262,8 @@ static void assert_pair(struct reading *reading, const unsigned pair[2])
         assert_times(reading, &answer);
     if (result->has_boxes)
         assert_box(reading, &answer);
+    if (result->has_points)
+        assert_point(reading, &answer);
     reading->contact++;
 }
 
@@ -283,6 +293,7 @@ void scene_assert(const struct scene_query *whole, const struct scene_result *re
     assert_int_equal(result->names_pairs, whole->which != FMB_PAIRS_LISTED);
     assert_int_equal(result->has_times, (whole->want & FMB_WANT_TIMES) != 0);
     assert_int_equal(result->has_boxes, whole->want & FMB_WANT_BOX && method->boxes);
+    assert_int_equal(result->has_points, whole->want & FMB_WANT_POINT && method->certain);
     assert_int_equal(result->has_gaps, wants_gaps(whole));
     assert_true(whole->first_pair <= result->end_pair && result->end_pair <= count);
     assert_true(result->end_pair > whole->first_pair || whole->first_pair == count);

@@ -428,7 +428,7 @@ static void bad_requests_are_refused(void **state)
     for (size_t i = 0; i < COUNT(durations); i++)
         REFUSED(query.duration = durations[i], FMB_BAD_DURATION, "duration: negative or not finite");
     REFUSED(query.method = 77, FMB_UNKNOWN_METHOD, "method: unknown method");
-    for (int bit = 4; bit < 31; bit++) /* FMB_WANT_POINT and all that have no name */
+    for (int bit = 5; bit < 31; bit++) /* those that have no name */
         REFUSED(query.want = FMB_WANT_BOX | 1 << bit, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
     for (int method = 2; method <= 3; method++)
         REFUSED(query.want = FMB_WANT_GAP; query.method = method, FMB_CANNOT_DECIDE, "method: gives no gaps");
@@ -516,7 +516,7 @@ static void wrong_counts_of_vertices_are_refused(void **state)
 static void pairs_of_hulls_are_answered_as_by_libfmb(void **state)
 {
     static const double vertices[2][8] = {{0, 0, 2, 0, 0, 2, 2, 2}, {1, 1, 3, 1, 3, 3, 1, 3}};
-    for (int32_t want = 0; want < 16; want++) {
+    for (int32_t want = 0; want < 32; want++) {
         static double memory[2][64];
         struct fmb_body body[2];
         struct fmb_placement placed[2];
@@ -657,8 +657,7 @@ static struct fmb_placement placement_of(struct query_bodies *own,
 static struct fmb_answer truth(const struct pair_query *query)
 {
     static struct query_bodies own[2];
-    const unsigned want = (query->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) |
-                          (query->want & FMB_WANT_GAP ? FMB_WANT_GAP : 0);
+    const unsigned want = (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT);
     struct fmb_answer answer;
     const struct fmb_placement a = placement_of(&own[0], &query->placement[0]);
     const struct fmb_placement b = placement_of(&own[1], &query->placement[1]);
@@ -697,6 +696,7 @@ static void bodies_of_several_frames_are_answered(void **state)
             const int method = k / 2;
             query.duration = k % 2;
             query.method = method;
+            query.want |= FMB_WANT_POINT;
             if (fmb_method_by_number(method)->certain)
                 query.want |= FMB_WANT_GAP;
             const struct fmb_answer expected = truth(&query);
@@ -922,21 +922,23 @@ static void inexact_methods_do_not_decide_flat_frames(void **state)
 }
 
 /* Of bodies of one frame, moving. */
-static void gaps_are_given_on_request(void **state)
+static void gaps_and_points_are_given_on_request(void **state)
 {
     const double speed[] = {0, -2, -2.5, -7};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 8; i++) {
         struct pair_query query = cubes();
-        query.want = FMB_WANT_GAP;
+        const bool gap = i < 4;
+        query.want = gap ? FMB_WANT_GAP : FMB_WANT_POINT;
         query.placement[1].placed.position[0] = 3;
         query.placement[1].velocity_count = 3;
-        query.placement[1].placed.velocity[0] = speed[i];
+        query.placement[1].placed.velocity[0] = speed[i % 4];
         const struct pair_result result = answer_to(&query);
         const struct fmb_answer expected = truth(&query);
         assert_memory_equal(&result.answer, &expected, sizeof expected);
-        assert_true(result.answer.has_gap);
+        assert_int_equal(result.answer.has_gap, gap);
         assert_int_equal(result.answer.gap.has_witness, i == 0);
-        assert_int_equal(result.dim, 3);
+        assert_int_equal(result.answer.has_point, i > 4); /* i == 4: they stay apart */
+        assert_int_equal(result.dim, i == 4 ? 0 : 3);
     }
 }
 
@@ -991,7 +993,7 @@ int main(void)
         TEST(certificates_are_given_on_request),
         TEST(bodies_by_handle_have_certificates),
         TEST(inexact_methods_do_not_decide_flat_frames),
-        TEST(gaps_are_given_on_request),
+        TEST(gaps_and_points_are_given_on_request),
         TEST(a_repeat_gets_the_same),
     };
     return cmocka_run_group_tests_name("answer", tests, NULL, NULL);

@@ -58,6 +58,7 @@ static size_t assert_fits(void)
         (size_t) result.verdict_count * (1 + (result.names_pairs ? WIRE_PAIR_BYTES : 0)) +
         (result.has_times ? 16 * contacts : 0) +
         (result.has_boxes ? 16 * (size_t) result.dim * contacts : 0) +
+        (result.has_points ? 8 * (1 + (size_t) result.dim) * contacts : 0) +
         (result.has_gaps ? (size_t) wire_gap_bytes(result.dim, result.names_frames) *
                                (size_t) result.verdict_count
                          : 0);
@@ -108,14 +109,16 @@ static struct cache_counts counts(void)
 
 /* ---- Right answers ---- */
 
-enum { WANTS_WITHOUT_GAPS = 4 };
+enum { WANTS_WITHOUT_GAPS = 6 };
 static const int32_t wants[] = {
     0,
     FMB_WANT_BOX,
     FMB_WANT_TIMES,
     FMB_WANT_BOX | FMB_WANT_TIMES,
+    FMB_WANT_POINT,
+    FMB_WANT_BOX | FMB_WANT_POINT,
     FMB_WANT_GAP,
-    FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP,
+    FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_POINT | FMB_WANT_GAP,
 };
 
 static double draw_margin(struct draw *draw)
@@ -301,8 +304,8 @@ static int parts_of(int pairs, int pair_bytes, int handles)
 static void parts_fill_their_datagrams(void **state)
 {
     set_heap(100, 3, true, true);
-    query->want = FMB_WANT_BOX | FMB_WANT_TIMES;
-    assert_int_equal(answer_all_parts(5 + 16 + 48), parts_of(4950, 5 + 16 + 48, 100));
+    query->want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_POINT;
+    assert_int_equal(answer_all_parts(5 + 16 + 48 + 32), parts_of(4950, 5 + 16 + 48 + 32, 100));
     set_heap(160, 2, false, false);
     query->want = 0;
     assert_int_equal(answer_all_parts(5), 1);
@@ -316,6 +319,8 @@ static void parts_fill_their_datagrams(void **state)
         query->index_count += 2;
     }
     assert_int_equal(answer_all_parts(1 + 32), parts_of(10600, 1 + 32, 0));
+    query->want = FMB_WANT_POINT;
+    assert_int_equal(answer_all_parts(1 + 24), parts_of(10600, 1 + 24, 0));
     query->want = FMB_WANT_GAP;
     query->index_count = 4000;
     assert_int_equal(answer_all_parts(1 + 72), parts_of(2000, 1 + 72, 0));
@@ -669,7 +674,7 @@ static void bad_requests_are_refused(void **state)
     query->method = -1;
     expect(FMB_UNKNOWN_METHOD, "method: unknown method");
     query->method = 0;
-    for (query->want = 2; query->want <= 2 * FMB_WANT_GAP; query->want *= 8)
+    for (query->want = 2; query->want <= 2 * FMB_WANT_POINT; query->want *= 16)
         expect(FMB_UNKNOWN_WANT, "want: wants what this version does not give");
     query->want = 0;
     for (query->which = -1; query->which <= 3; query->which += 4)

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <pthread.h>
 
-enum { ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES };
+enum { ALL_WANTS = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_POINT };
 
 static struct fmb_placement *frames_of(size_t count, int dim, double size, int64_t first_id)
 {
@@ -159,7 +159,7 @@ static enum fmb_status decide(struct giving *giving, struct fmb_answer *answer)
     if (++giving->b == scene->placement_count)
         giving->b = ++giving->a + 1;
     const unsigned want =
-        (scene->want & FMB_WANT_BOX ? FMB_WANT_BOX : 0) | (scene->margin > 0 ? FMB_WANT_GAP : 0);
+        (scene->want & (FMB_WANT_BOX | FMB_WANT_POINT)) | (scene->margin > 0 ? FMB_WANT_GAP : 0);
     const enum fmb_status status = fmb_decide(method, a, b, scene->duration, want, answer);
     if (!(scene->want & FMB_WANT_GAP))
         query_remove_far_gap(scene->margin, answer);
@@ -188,6 +188,7 @@ static void check_method(void *user, const struct fmb_client_answer *answer)
     if (giving->scene->want & FMB_WANT_TIMES)
         assert_memory_equal(answer->answer.contact, should.contact, sizeof should.contact);
     assert_memory_equal(answer->answer.box, should.box, sizeof should.box);
+    assert_memory_equal(answer->answer.point, should.point, sizeof should.point);
     assert_true(query_same_gap(&answer->answer.gap, &should.gap));
     giving->given++;
     giving->undecided += status != FMB_OK;
@@ -349,8 +350,7 @@ static void hulls(void **state)
         struct fmb_placement *body = frames_of(BODIES, dim, dim == 2 ? 25 : 8, 1);
         for (int i = 0; i < BODIES; i++)
             body[i].body = i % 4 == 3 ? body[i].body : with_hull(body[i].body, i);
-        struct fmb_scene scene =
-            scene_of(body, BODIES, FMB_PAIRS_ALL, FMB_WANT_TIMES | FMB_WANT_BOX);
+        struct fmb_scene scene = scene_of(body, BODIES, FMB_PAIRS_ALL, ALL_WANTS);
         for (int round = 0; round < 3; round++) { /* whole, by handle, with gaps */
             scene.want |= round == 2 ? FMB_WANT_GAP : 0;
             scene.margin = round == 2 ? 0.25 : 0;
@@ -359,7 +359,7 @@ static void hulls(void **state)
         for (int i = 1; i < BODIES; i++) {
             struct fmb_client_answer got;
             struct fmb_answer expected;
-            const unsigned want = FMB_WANT_BOX | FMB_WANT_GAP;
+            const unsigned want = FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT;
             assert_int_equal(fmb_client_query_pair(test.client, &body[i - 1], 1, want, &got),
                              FMB_OK);
             assert_int_equal(
@@ -368,6 +368,7 @@ static void hulls(void **state)
             assert_int_equal(got.answer.verdict, expected.verdict);
             assert_memory_equal(got.answer.contact, expected.contact, sizeof expected.contact);
             assert_memory_equal(got.answer.box, expected.box, sizeof expected.box);
+            assert_memory_equal(got.answer.point, expected.point, sizeof expected.point);
             assert_true(query_same_gap(&got.answer.gap, &expected.gap));
         }
         free(body);
@@ -494,7 +495,7 @@ static void wrong_scenes_are_refused(void **state)
     wrong(test.client, &scene, FMB_BAD_PAIR, "split: ");
     scene.which = (enum fmb_pairs) 3;
     wrong(test.client, &scene, FMB_BAD_PAIR, "which: ");
-    scene.which = FMB_PAIRS_ALL, scene.want = FMB_WANT_POINT;
+    scene.which = FMB_PAIRS_ALL, scene.want = 2 * FMB_WANT_POINT;
     wrong(test.client, &scene, FMB_UNKNOWN_WANT, "want: ");
     scene.want = 0, scene.duration = -1;
     wrong(test.client, &scene, FMB_BAD_DURATION, "duration: ");

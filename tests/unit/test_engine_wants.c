@@ -204,8 +204,6 @@ static void expect_service(const struct subject *subject)
     const bool certified =
         pair_certificate(subject->pair, certificate, sizeof certificate, &length) == FMB_OK;
     for (unsigned want = 0; want <= (ALL | FMB_WANT_CERTIFICATE); want++) {
-        if (want & FMB_WANT_POINT)
-            continue;
         if (!(want & FMB_WANT_TIMES) && (certified || !(want & FMB_WANT_CERTIFICATE)))
             expect_pair_query(subject, of, want, certificate);
         if (!(want & FMB_WANT_CERTIFICATE))

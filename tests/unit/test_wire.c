@@ -393,6 +393,73 @@ static void points_are_read_back(void **state)
         }
 }
 
+/* Witness points: separated pairs have them, those that overlap may, those that touch have none. In
+ * scenes, NaN stands for none. */
+static void witness_points_depend_on_the_verdict(void **state)
+{
+    static unsigned char bytes[QUERY_BYTES_MAX];
+    static struct scene_result scene, scene_read;
+    for (int dim = 2; dim <= 3; dim++)
+        for (int verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++)
+            for (int has = 0; has < 2; has++) {
+                const bool meets = verdict != FMB_SEPARATED;
+                const double bound = verdict == FMB_TOUCHING ? 0 : meets ? -0.5 : 0.5;
+                struct pair_result read, result = {.dim = dim};
+                result.answer = (struct fmb_answer){
+                    .verdict = (enum fmb_verdict) verdict,
+                    .has_contact = meets,
+                    .has_gap = true,
+                    .gap = {.bounds = {bound, bound}, .direction = {1}, .has_witness = has}};
+                if (has)
+                    result.answer.gap.time = 0.25, result.answer.gap.witness[1][0] = bound;
+                const bool good = verdict == FMB_OVERLAPPING || has == (verdict == FMB_SEPARATED);
+                const size_t size = wire_write_pair_result(&result, bytes);
+                assert_int_equal(!wire_read_pair_result(bytes, (uint32_t) size, &read), good);
+                if (good)
+                    assert_true(query_same_answer(&read.answer, &result.answer));
+                scene = (struct scene_result){.end_pair = 1,
+                                              .verdict_count = 1,
+                                              .verdict = {(unsigned char) verdict},
+                                              .contact_count = meets,
+                                              .has_gaps = true};
+                scene.dim = dim;
+                scene.gap[0] = result.answer.gap;
+                const size_t length = wire_write_scene_result(&scene, bytes);
+                assert_int_equal(!wire_read_scene_result(bytes, (uint32_t) length, &scene_read),
+                                 good);
+                if (good)
+                    assert_true(query_same_gap(&scene_read.gap[0], &scene.gap[0]));
+            }
+}
+
+/* NaN in place of the witness points of a pair is malformed: it has 0 numbers. */
+static void a_pair_has_no_nan_for_witness_points(void **state)
+{
+    double zero[8] = {0}, none[7] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    double bounds[2] = {-0.5, -0.5}, unit[3] = {1};
+    char empty[] = "";
+    for (int numbers = 0; numbers <= 7; numbers++)
+        for (int nan = 0; nan < 2; nan++) {
+            fmb_msgs_pair_result_t message = {.detail = empty,
+                                              .verdict = FMB_OVERLAPPING,
+                                              .num_contact = 2,
+                                              .contact = zero,
+                                              .num_gap = 2,
+                                              .gap = bounds,
+                                              .num_direction = 3,
+                                              .direction = unit,
+                                              .num_witness = numbers,
+                                              .witness = nan ? none : zero,
+                                              .certificate = empty};
+            unsigned char bytes[WIRE_STATUS_BYTES_MAX];
+            struct pair_result read;
+            const int size = fmb_msgs_pair_result_t_encode(bytes, 0, sizeof bytes, &message);
+            assert_true(size > 0);
+            assert_int_equal(wire_read_pair_result(bytes, (uint32_t) size, &read) == NULL,
+                             numbers == 0 || (numbers == 7 && !nan));
+        }
+}
+
 /* A newer service may have more counters, in another order, and a longer version. */
 static void a_heartbeat_of_a_newer_service_is_read(void **state)
 {
@@ -474,6 +541,8 @@ int main(void)
         cmocka_unit_test(too_long_certificates_are_refused),
         cmocka_unit_test(a_box_of_too_many_numbers_is_refused),
         cmocka_unit_test(points_are_read_back),
+        cmocka_unit_test(witness_points_depend_on_the_verdict),
+        cmocka_unit_test(a_pair_has_no_nan_for_witness_points),
         cmocka_unit_test(a_heartbeat_of_a_newer_service_is_read),
         cmocka_unit_test(names_are_read_back),
     };
