@@ -5,6 +5,7 @@
 #include "args.h"
 #include "complain.h"
 #include "enclosure.h"
+#include "fmb_client.h"
 #include "joints.h"
 #include "robot_scene.h"
 #include "scene_json.h"
@@ -21,8 +22,9 @@ static const char usage[] =
     "Prints a robot as a scene for 'fmb query': a body for each link, with its name,\n"
     "made of its <collision> elements. A link without any has no body. Boxes, spheres\n"
     "and capsules are exact. A mesh (STL, OBJ, PLY, COLLADA) becomes its convex\n"
-    "hull, of at most 1024 vertices; vertices of the mesh inside the hull do not\n"
-    "count. With a table of joint values, prints a scene for each row:\n"
+    "hull. If that has more than 1024 vertices, or a body more than 63500 bytes, it\n"
+    "has fewer vertices, and a radius with which it contains the mesh. With a table\n"
+    "of joint values, prints a scene for each row:\n"
     "\n"
     "  fmb scene robot.urdf --joints-csv path.csv --with world.json |\n"
     "    fmb query --local --contacts --fail-if overlapping\n"
@@ -47,6 +49,9 @@ static const char usage[] =
     "                       4 up to 512 (16). A hull extends beyond a cylinder of\n"
     "                       radius r by at most r (1 / cos(pi/N) - 1): with 16 sides,\n"
     "                       0.02 r\n"
+    "  --excess D           how far a hull may extend beyond its mesh (0), so that it\n"
+    "                       has fewer vertices, as few as that takes. How far it does\n"
+    "                       is reported, also of hulls that do not fit otherwise\n"
     "  --objects            a hull for each object (o) of an OBJ file, for convex\n"
     "                       decompositions\n"
     "  --package-path DIRS  folders to search for packages, separated by colons: a\n"
@@ -190,6 +195,7 @@ int cmd_scene(int argc, char **argv)
         {"joints-csv", ARGS_OTHER, &options.table, .take = take_once},
         {"limit-slack", ARGS_NUMBER, &options.slack, .high = INFINITY},
         {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ENCLOSURE_SIDES_MAX},
+        {"excess", ARGS_NUMBER, &options.body.excess, .high = DBL_MAX},
         {"objects", ARGS_FLAG, .out = &options.body.objects},
         {"package-path", ARGS_OTHER, &options.body.package_path, .take = take_once},
         {"with", ARGS_OTHER, &options.world, .take = take_once},
@@ -205,6 +211,7 @@ int cmd_scene(int argc, char **argv)
         code = ARGS_USAGE;
     }
     options.body.sides = (int) options.sides;
+    options.body.bytes_max = FMB_CLIENT_BODY_BYTES_MAX;
     if (code == ARGS_RUN)
         code = print_file(&options, args.operands[0]);
     free(options.ignored);

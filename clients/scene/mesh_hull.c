@@ -1,8 +1,8 @@
-/* Method. The hull of the selected points grows until it contains all points, as the engine decides
- * exactly. If a point is separated from it, the point that is farthest in the direction of their
- * gap is selected; if that one is selected already, the separated point. Rounding in this search
- * can only select points that are not vertices. At the end, and when there are too many, selected
- * points that are in the hull of the others are removed. */
+/* mesh_hull(). The hull of the selected points grows until it contains all points, as the engine
+ * decides exactly. If a point is separated from it, the point that is farthest in the direction of
+ * their gap is selected; if that one is selected already, the separated point. Rounding in this
+ * search can only select points that are not vertices. At the end, and when there are too many,
+ * selected points that are in the hull of the others are removed. */
 #include "mesh_hull.h"
 
 #include "allocate.h"
@@ -36,9 +36,9 @@ static bool make_hull(struct growing *growing)
     return growing->status == FMB_OK;
 }
 
-/* Whether a point is outside the hull; false also on error. direction, unless NULL: receives the
- * direction from the hull to the point. */
-static bool is_outside(struct growing *growing, size_t i, double direction[3])
+/* Whether a point is outside the hull; false also on error. gap, unless NULL: receives that from
+ * the hull to the point. */
+static bool is_outside(struct growing *growing, size_t i, struct fmb_gap *gap)
 {
     struct fmb_body point;
     const struct fmb_placement hull = {.body = &growing->hull}, at = {.body = &point};
@@ -48,9 +48,9 @@ static bool is_outside(struct growing *growing, size_t i, double direction[3])
         growing->status = fmb_decide(fmb_method_default(), &hull, &at, 0, 0, &answer);
     if (growing->status != FMB_OK || answer.verdict != FMB_SEPARATED)
         return false;
-    if (direction) {
+    if (gap) {
         growing->status = fmb_decide(fmb_method_default(), &hull, &at, 0, FMB_WANT_GAP, &answer);
-        memcpy(direction, answer.gap.direction, 3 * sizeof *direction);
+        *gap = answer.gap;
     }
     return growing->status == FMB_OK;
 }
@@ -103,13 +103,13 @@ static bool select_point(struct growing *growing, size_t i)
 
 static bool grow(struct growing *growing)
 {
-    double direction[3];
+    struct fmb_gap gap;
     if (!select_point(growing, 0))
         return false;
     for (size_t i = 0; growing->status == FMB_OK && i < growing->count; i++) {
         progress_to(growing->done = (int64_t) i, (int64_t) growing->count);
-        while (!growing->used[i] && is_outside(growing, i, direction)) {
-            const size_t best = farthest(growing, direction);
+        while (!growing->used[i] && is_outside(growing, i, &gap)) {
+            const size_t best = farthest(growing, gap.direction);
             if (!select_point(growing, growing->used[best] ? i : best))
                 return false;
         }
@@ -117,21 +117,87 @@ static bool grow(struct growing *growing)
     return growing->status == FMB_OK && prune(growing);
 }
 
-enum fmb_status mesh_hull(const double (*point)[3], size_t count, double (*vertex)[3],
-                          size_t *found)
+static bool comes_first(const double a[3], const double b[3])
 {
-    struct growing growing = {
+    const int axis = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
+    return a[axis] < b[axis];
+}
+
+/* Lowers the bound of point i to what holds of the current hull. */
+static void lower_bound(struct growing *growing, size_t i, double *bound)
+{
+    struct fmb_gap gap;
+    const bool outside = is_outside(growing, i, &gap);
+    if (growing->status == FMB_OK)
+        bound[i] = outside ? fmin(bound[i], gap.bounds[1]) : 0;
+}
+
+/* In: bound: [count], all infinite. Returns the largest of the bounds at the end. */
+static double cover(struct growing *growing, size_t most, double excess, double *bound)
+{
+    size_t best = 0; /* the farthest point */
+    for (size_t i = 1; i < growing->count; i++)
+        if (comes_first(growing->point[i], growing->point[best]))
+            best = i; /* a vertex of the hull of all */
+    do {
+        progress_to((int64_t) growing->selected, (int64_t) most);
+        bound[best] = 0;
+        growing->used[best] = true;
+        growing->selected++;
+        if (!make_hull(growing))
+            break;
+        for (size_t i = 0; i < growing->count; i++)
+            if (bound[i] > bound[best])
+                best = i;
+        lower_bound(growing, best, bound);
+        for (size_t i = 0; i < growing->count && growing->status == FMB_OK; i++)
+            if (bound[i] > bound[best]) {
+                lower_bound(growing, i, bound);
+                if (bound[i] > bound[best])
+                    best = i;
+            }
+    } while (growing->status == FMB_OK && bound[best] > excess && growing->selected < most);
+    return bound[best];
+}
+
+static struct growing begin(const double (*point)[3], size_t count, double (*vertex)[3])
+{
+    progress_begin("vertices of a hull");
+    return (struct growing){
         .point = point,
         .count = count,
         .vertex = vertex,
-        .used = allocate(count, sizeof *growing.used),
-        .memory = allocate(fmb_hull_doubles(3, FMB_HULL_VERTICES_MAX), sizeof *growing.memory),
-        .point_memory = allocate(fmb_hull_doubles(3, 1), sizeof *growing.point_memory)};
-    progress_begin("vertices of a hull");
-    *found = grow(&growing) ? growing.selected : 0;
+        .used = allocate(count, sizeof(bool)),
+        .memory = allocate(fmb_hull_doubles(3, FMB_HULL_VERTICES_MAX), sizeof(double)),
+        .point_memory = allocate(fmb_hull_doubles(3, 1), sizeof(double))};
+}
+
+static enum fmb_status end(struct growing *growing)
+{
     progress_end();
-    free(growing.used);
-    free(growing.memory);
-    free(growing.point_memory);
-    return growing.status;
+    free(growing->used);
+    free(growing->memory);
+    free(growing->point_memory);
+    return growing->status;
+}
+
+enum fmb_status mesh_hull(const double (*point)[3], size_t count, double (*vertex)[3],
+                          size_t *found)
+{
+    struct growing growing = begin(point, count, vertex);
+    *found = grow(&growing) ? growing.selected : 0;
+    return end(&growing);
+}
+
+enum fmb_status mesh_hull_cover(const double (*point)[3], size_t count, size_t most, double excess,
+                                double (*vertex)[3], size_t *found, double *radius)
+{
+    struct growing growing = begin(point, count, vertex);
+    double *bound = allocate_unset(count * sizeof *bound);
+    for (size_t i = 0; i < count; i++)
+        bound[i] = INFINITY;
+    *radius = cover(&growing, most, excess, bound);
+    *found = growing.selected;
+    free(bound);
+    return end(&growing);
 }

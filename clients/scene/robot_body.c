@@ -3,7 +3,6 @@
 #include "allocate.h"
 #include "complain.h"
 #include "enclosure.h"
-#include "fmb_client.h"
 #include "mesh_hull.h"
 #include "mesh.h"
 #include "number.h"
@@ -26,7 +25,8 @@ struct frames {
     struct robot_meshes *meshes;
     const struct pose *placed; /* of the current element in the body; NULL: at its origin */
     struct given_frame *frame; /* owned */
-    size_t count, capacity;
+    bool *is_mesh;             /* owned, [count]: a hull whose vertices may be exchanged */
+    size_t count, capacity, mesh_capacity;
 };
 
 /* Reports an error of an element. Returns false. */
@@ -48,15 +48,16 @@ static void add_frame(struct frames *frames, const struct given_frame *given)
 {
     frames->frame =
         allocate_grow(frames->frame, &frames->capacity, frames->count + 1, sizeof *frames->frame);
+    frames->is_mesh = allocate_grow(frames->is_mesh, &frames->mesh_capacity, frames->count + 1,
+                                    sizeof *frames->is_mesh);
+    frames->is_mesh[frames->count] = false;
     frames->frame[frames->count++] = *given;
 }
 
-/* Adds a hull and places its vertices, [count][axis], which the scene owns. */
-static void add_hull(struct frames *frames, double (*vertex)[3], size_t count, double radius)
+static void place_vertices(const struct frames *frames, double (*vertex)[3], size_t count)
 {
     for (size_t i = 0; i < count && frames->placed; i++)
         pose_apply(frames->placed, vertex[i]);
-    add_frame(frames, &(struct given_frame){FMB_HULL, true, 3 * count, vertex[0], radius});
 }
 
 /* ---- Boxes, cylinders, spheres and capsules ---- */
@@ -91,7 +92,9 @@ static void add_capsule(struct frames *frames, const struct robot_element *eleme
     double(*vertex)[3] = scene_alloc(frames->scene, count, sizeof *vertex);
     for (size_t i = 0; i < count; i++)
         vertex[i][2] = element->size[1] / (i == 0 && count == 2 ? -2 : 2);
-    add_hull(frames, vertex, count, element->size[0]);
+    place_vertices(frames, vertex, count);
+    add_frame(frames,
+              &(struct given_frame){FMB_HULL, true, 3 * count, vertex[0], element->size[0]});
 }
 
 /* ---- Meshes ---- */
@@ -153,7 +156,7 @@ static bool add_faces(struct frames *frames, const struct robot_element *element
     if (first == end)
         return true;
     double(*point)[3] = allocate(least(3 * (end - first), mesh->vertex_count), sizeof *point);
-    size_t count = 0, found;
+    size_t count = 0, found = 0;
     for (size_t corner = 3 * first; corner < 3 * end; corner++) {
         const unsigned v = mesh->face[corner / 3][corner % 3];
         for (int axis = 0; axis < 3 && used[v] != end; axis++)
@@ -163,18 +166,24 @@ static bool add_faces(struct frames *frames, const struct robot_element *element
     }
     double(*vertex)[3] =
         scene_alloc(frames->scene, least(count, FMB_HULL_VERTICES_MAX), sizeof *vertex);
-    const enum fmb_status status = mesh_hull((const double(*)[3]) point, count, vertex, &found);
+    enum fmb_status status = FMB_OK;
+    double radius = 0;
+    if (frames->options->excess == 0)
+        status = mesh_hull((const double(*)[3]) point, count, vertex, &found);
+    if (status == FMB_OK && found > 0)
+        place_vertices(frames, vertex, found);
+    else if (status == FMB_OK) {
+        place_vertices(frames, point, count);
+        status = mesh_hull_cover((const double(*)[3]) point, count, FMB_HULL_VERTICES_MAX,
+                                 frames->options->excess, vertex, &found, &radius);
+    }
     free(point);
-    if (status != FMB_OK)
-        return refuse(frames, element, "%s: %s", path, fmb_status_text((int) status));
     if (object > 0)
         snprintf(of, sizeof of, ": object %zu", object);
-    if (found == 0)
-        return refuse(frames, element,
-                      "%s%s: the hull of its %zu vertices has more than %d: simplify the mesh, or "
-                      "divide it into convex objects of an OBJ file (--objects)",
-                      path, of, count, (int) FMB_HULL_VERTICES_MAX);
-    add_hull(frames, vertex, found, 0);
+    if (status != FMB_OK)
+        return refuse(frames, element, "%s%s: %s", path, of, fmb_status_text((int) status));
+    add_frame(frames, &(struct given_frame){FMB_HULL, true, 3 * found, vertex[0], radius});
+    frames->is_mesh[frames->count - 1] = true;
     return true;
 }
 
@@ -220,6 +229,11 @@ void robot_meshes_report(const struct robot_meshes *meshes, const char *file)
             "%s: the <unit> of %zu of its COLLADA meshes is applied, as in RViz and Gazebo, "
             "but not in MoveIt: %s m in %s",
             file, meshes->scaled, number_short(meshes->first_unit, text), meshes->first_file);
+    if (meshes->rounded > 0) /* rounded up */
+        complain(
+            "%s: %zu of the hulls of its meshes have fewer vertices and a radius; they contain "
+            "the meshes, and extend beyond them by at most %s",
+            file, meshes->rounded, number_short(meshes->excess * (1 + 1e-5), text));
 }
 
 /* ---- Bodies ---- */
@@ -234,20 +248,65 @@ static bool add_element(struct frames *frames, const struct robot_element *eleme
     }
 }
 
+/* Returns the bytes of the body in a message if no hull of a mesh has more vertices than this. */
+static size_t count_bytes(const struct frames *frames, size_t most)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < frames->count; i++) {
+        struct given_frame frame = frames->frame[i];
+        if (frames->is_mesh[i] && frame.count > 3 * most) {
+            frame.count = 3 * most;
+            frame.radius = 1; /* any */
+        }
+        bytes += scene_body_bytes(&frame, 1);
+    }
+    return bytes;
+}
+
+/* Reduces hulls of meshes so that the body fits into a message, if that is wanted and possible: to
+ * the largest number of vertices that does it. */
+static enum fmb_status fit_body(struct frames *frames)
+{
+    size_t most = FMB_HULL_VERTICES_MAX, found;
+    enum fmb_status status = FMB_OK;
+    while (most > 1 && frames->options->bytes_max > 0 &&
+           count_bytes(frames, most) > frames->options->bytes_max)
+        most--;
+    for (size_t i = 0; i < frames->count && status == FMB_OK; i++) {
+        struct given_frame *frame = &frames->frame[i];
+        double radius, (*vertex)[3];
+        if (!frames->is_mesh[i])
+            continue;
+        if (frame->count > 3 * most) {
+            vertex = scene_alloc(frames->scene, most, sizeof *vertex);
+            status = mesh_hull_cover((const double(*)[3]) frame->numbers, frame->count / 3, most, 0,
+                                     vertex, &found, &radius);
+            frame->numbers = vertex[0];
+            frame->count = 3 * found;
+            frame->radius =
+                frame->radius == 0 ? radius : nextafter(frame->radius + radius, INFINITY);
+        }
+        frames->meshes->rounded += frame->radius > 0;
+        frames->meshes->excess = fmax(frames->meshes->excess, frame->radius);
+    }
+    return status;
+}
+
 static const struct fmb_body *make_body(struct frames *frames, const struct robot_element *first)
 {
     const struct fmb_body *body;
+    enum fmb_status status = fit_body(frames);
     const size_t bytes = scene_body_bytes(frames->frame, frames->count);
     size_t bad;
-    if (bytes > FMB_CLIENT_BODY_BYTES_MAX) {
+    if (frames->options->bytes_max > 0 && bytes > frames->options->bytes_max) {
         refuse(frames, first,
                "%zu frames take %zu bytes in a message, which has space for %d: simplify its "
                "meshes, or give fewer --sides",
-               frames->count, bytes, (int) FMB_CLIENT_BODY_BYTES_MAX);
+               frames->count, bytes, (int) frames->options->bytes_max);
         return NULL;
     }
-    const enum fmb_status status =
-        scene_make_body(frames->scene, frames->frame, frames->count, &body, &bad);
+    if (status == FMB_OK)
+        status = scene_make_body(frames->scene, frames->frame, frames->count, &body, &bad);
     if (status == FMB_OK)
         return body;
     refuse(frames, first, "%s", fmb_status_text((int) status));
@@ -275,5 +334,6 @@ const struct fmb_body *robot_body(const struct robot *robot, const struct robot_
     if (good)
         body = make_body(&frames, element);
     free(frames.frame);
+    free(frames.is_mesh);
     return body;
 }

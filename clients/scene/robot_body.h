@@ -1,6 +1,7 @@
 /* Links of a robot as bodies of the engine. Boxes, spheres and capsules are exact. A cylinder
  * becomes a hull that encloses it; a mesh becomes the hull of the vertices of its faces, or a hull
- * for each object. */
+ * for each object. A hull of too many vertices becomes one of fewer with a radius, which contains
+ * the mesh (mesh_hull_cover()). */
 #ifndef ROBOT_BODY_H
 #define ROBOT_BODY_H
 
@@ -10,6 +11,8 @@ struct robot_body_options {
     int sides;                /* of the hulls of cylinders: a multiple of 4 (enclosure.h) */
     bool objects;             /* of an OBJ: a hull for each */
     const char *package_path; /* folders of packages, separated by colons; NULL: none */
+    double excess;            /* how far hulls may extend beyond meshes, for fewer vertices */
+    size_t bytes_max;         /* of a body in a message; 0: any number */
 };
 
 /* What was done to the meshes of a robot. All 0: nothing. */
@@ -17,6 +20,8 @@ struct robot_meshes {
     size_t scaled;          /* the number of COLLADA meshes whose unit is not 1 m ... */
     const char *first_file; /* ... and the first one */
     double first_unit;
+    size_t rounded; /* the number of hulls that have a radius in place of vertices ... */
+    double excess;  /* ... and the largest radius */
 };
 
 /* Reports it, in at most one line for each kind of change. file: of the robot. */

@@ -286,13 +286,126 @@ EOF
     is 200
 }
 
-@test "a hull of too many vertices is refused, with the number of vertices" {
-    awk 'BEGIN { for (i = 0; i < 1100; i++) print "v", i, i * i, 0; for (i = 3; i <= 1100; i++) print "f 1 2", i }' > m.obj
+# sphere VERTICES: writes m.obj, of points at 1 or less from (1, 2, 3), all of them vertices of the hull, and a robot of it.
+sphere() {
+    awk -v n="$1" 'BEGIN {
+        for (i = 0; i < n; i++) {
+            z = 1 - (2 * i + 1) / n; r = sqrt(1 - z * z)
+            printf "v %.9f %.9f %.9f\n", 1 + r * cos(2.399963 * i), 2 + r * sin(2.399963 * i), 3 + z
+        }
+        for (i = 3; i <= n; i++) print "f", i - 2, i - 1, i
+    }' > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
-    refused "line 3: link 'a': m.obj: the hull of its 1100 vertices has more than 1024: simplify the mesh" robot.urdf
-    { sed '/^f/d' m.obj; printf '%s\n' 'o a' 'f 1 2 3' 'o b'; sed -n '/^f/p' m.obj; } > objects.obj
-    sed -i 's/m\.obj/objects.obj/' robot.urdf
-    refused "objects.obj: object 2: the hull of its 1100 vertices has more than 1024: " robot.urdf --objects
+}
+
+# Proves in rational numbers that each vertex of m.obj is within the radius of a point of a hull in output.txt, a
+# weighted mean of its vertices, of which each is one of m.obj. Prints the number of vertices, and how far the farthest
+# one is, as a part of the radius.
+prove_cover() {
+    /usr/bin/python3 - << 'EOF'
+import itertools, json, numpy
+from fractions import Fraction
+
+points = [[float(x) for x in line.split()[1:]] for line in open("m.obj") if line[0] == "v"]
+body = json.load(open("output.txt"))["bodies"][0]
+vertices, radius = body["vertices"], Fraction(body["radius"])
+assert all(v in points for v in vertices)
+V = numpy.array(vertices)
+most = 0
+
+def simplices(near):
+    """Weights of the points in the planes of corners, lines of edges, and vertices, that are nearest to p."""
+    for k in (1, 2, 3):
+        index = numpy.array(list(itertools.combinations(near, k)))
+        origin, edges = V[index[:, 0]], V[index[:, 1:]] - V[index[:, :1]]
+        if k == 1:
+            yield index, numpy.ones((len(index), 1))
+            continue
+        gram = edges @ edges.transpose(0, 2, 1) + 1e-30 * numpy.eye(k - 1)
+        t = numpy.linalg.solve(gram, (edges @ (p - origin)[:, :, None]))[:, :, 0]
+        yield index, numpy.hstack([1 - t.sum(axis=1, keepdims=True), t])
+
+for point in points:
+    p, best = numpy.array(point), None
+    near = numpy.argsort(((V - p) ** 2).sum(axis=1))[:10]
+    for index, weight in simplices(near):
+        error = ((numpy.einsum("ij,ijk->ik", weight, V[index]) - p) ** 2).sum(axis=1)
+        error[(weight < 0).any(axis=1)] = numpy.inf
+        i = error.argmin()
+        if best is None or error[i] < best[0]:
+            best = error[i], index[i], weight[i]
+    weight = [Fraction(w) for w in best[2]]
+    mean = [sum(w * Fraction(vertices[i][axis]) for w, i in zip(weight, best[1])) / sum(weight) for axis in range(3)]
+    square = sum((Fraction(x) - m) ** 2 for x, m in zip(point, mean))
+    assert square <= radius ** 2, point
+    most = max(most, square / radius ** 2)
+print(len(vertices), "%.6f" % float(most) ** 0.5)
+EOF
+}
+
+@test "a hull of too many vertices has fewer and a radius, which contains all, and is no larger than it has to be" {
+    /usr/bin/python3 -c 'import numpy' 2> /dev/null || skip "needs python3-numpy"
+    sphere 3000
+    scene robot.urdf
+    ended 0
+    [[ $stderr == 'fmb: robot.urdf: 1 of the hulls of its meshes have fewer vertices and a radius; they contain the meshes, and extend beyond them by at most 0.0037'* ]]
+    echo "$output" > output.txt
+    run prove_cover
+    is '1024 1.000000'
+    # One placed within its link, and those of two objects.
+    sed -i "s|<collision>|$box<collision><origin xyz='0 0 1' rpy='0 0 1'/>|" robot.urdf
+    scene robot.urdf
+    shows '.bodies[0].frames[1] | (.vertices | length), .radius < 0.004'
+    is $'1024\ntrue'
+    { grep -v f m.obj; echo 'o a'; grep '^f' m.obj; echo 'o b'; grep '^f' m.obj; } > n.obj
+    mv n.obj m.obj
+    scene robot.urdf --objects
+    shows '.bodies[0].frames[1:][].vertices | length'
+    is $'1024\n1024'
+}
+
+@test "hulls of a body that does not fit into a message have fewer vertices, as many as do" {
+    { for i in 1 2 3; do echo "o $i"; awk 'BEGIN { for (i = 0; i < 1000; i++) print "v", i, i * i, 0; for (i = 3; i <= 1000; i++) print "f -1000 -999 -" i - 2 }'; done; } > m.obj
+    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
+    scene robot.urdf --objects
+    [[ $stderr == "fmb: robot.urdf: 3 of the hulls of its meshes have fewer vertices and a radius; "* ]]
+    shows '.bodies[0].frames | map(.vertices | length), map(.radius > 0)'
+    is $'[881,881,881]\n[true,true,true]'
+    # 63,500 bytes are 4,884 objects of a vertex and a radius at least.
+    { echo 'v 0 0 0'; echo 'v 1 0 0'; echo 'v 0 1 0'; for ((i = 0; i < 2000; i++)); do echo o; echo f 1 2 3; done; } > m.obj
+    refused '2000 frames take ' robot.urdf --objects
+    [[ $stderr == *' bytes in a message, which has space for 63500: simplify its meshes, or give fewer --sides' ]]
+}
+
+@test "--excess is what a hull may extend beyond its mesh, with as few vertices as that takes" {
+    /usr/bin/python3 -c 'import numpy' 2> /dev/null || skip "needs python3-numpy"
+    sphere 500
+    scene robot.urdf
+    said ''
+    shows '.bodies[0] | (.vertices | length), .radius'
+    is $'500\nnull'
+    before=1000
+    for excess in 0.02 0.1 0.5; do
+        scene robot.urdf --excess "$excess"
+        shows ".bodies[0] | .radius > 0 and .radius <= $excess"
+        is true
+        scene robot.urdf --excess "$excess"
+        echo "$output" > output.txt
+        run prove_cover
+        [ "${output% *}" -lt "$before" ]
+        before=${output% *}
+        [ "${output#* }" = 1.000000 ]
+    done
+    scene robot.urdf --excess 5
+    shows '.bodies[0].frames | map([.shape, .radius < 2])'
+    is '[["sphere",true]]'
+    # Where fewer vertices lose nothing, there is no radius.
+    printf 'v %s\n' '0 0 0' '4 0 0' '0 4 0' '0 0 4' '1 1 1' '0 2 2' > m.obj
+    printf 'f %s\n' '1 2 3' '4 5 6' >> m.obj
+    scene robot.urdf --excess 0.001
+    said ''
+    shows '.bodies[0] | .vertices, .radius'
+    is $'[[0,0,0],[4,0,0],[0,4,0],[0,0,4]]\nnull'
 }
 
 # Coordinates that span the doubles: most points need exact arithmetic.
@@ -689,10 +802,6 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     link "<collision><geometry><mesh filename='m.stl' scale='1e308 1e308 1'/></geometry></collision>"
     scene robot.urdf
     ended 0
-    # More than a message can hold.
-    { for i in 1 2 3; do echo "o $i"; awk 'BEGIN { for (i = 0; i < 1000; i++) print "v", i, i * i, 0; for (i = 3; i <= 1000; i++) print "f -1000 -999 -" i - 2 }'; done; } > m.obj
-    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
-    refused '3 frames take 72015 bytes in a message, which has space for 63500: simplify its meshes, or give fewer --sides' robot.urdf --objects
 }
 
 @test "other formats and wrong XML are refused" {
@@ -776,6 +885,7 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     wrong scene a --sides 18
     wrong scene a --sides 516
     wrong scene a --margin -1
+    wrong scene a --excess -1
     wrong scene a --limit-slack -0.1
     wrong scene a --limit-slack nan
     wrong scene a --with a.json --with b.json # not only the bodies of one of them

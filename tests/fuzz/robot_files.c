@@ -156,7 +156,8 @@ static void check_scene(struct robot_scene *scene)
 /* With joint values that the caller has checked. */
 static void check_scenes(const struct robot *robot, const double *value, bool objects)
 {
-    const struct robot_body_options options = {.sides = 4, .objects = objects};
+    const struct robot_body_options options = {
+        .sides = 4, .objects = objects, .excess = objects ? 0 : 0.25};
     struct robot_scene scene;
     begin_messages();
     const bool made = robot_scene_make(robot, &options, &scene);

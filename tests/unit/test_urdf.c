@@ -276,17 +276,24 @@ static void add_point(double x, double y, double z)
     points[point_count++][2] = z;
 }
 
-/* Decides by the exact method. */
-static bool is_in_hull(const double (*vertex)[3], size_t count, const double point[3])
+/* Decides by the exact method whether a point is in the rounded hull. */
+static bool is_in_rounded(const double (*vertex)[3], size_t count, double radius,
+                          const double point[3])
 {
     static double memory[8192], point_memory[64];
     struct fmb_body hull, single;
     struct fmb_answer answer;
     const struct fmb_placement a = {.body = &hull}, b = {.body = &single};
     assert_int_equal(fmb_body_make_hull(3, vertex[0], 3 * count, memory, &hull), FMB_OK);
+    assert_int_equal(fmb_body_inflate(&hull, radius), FMB_OK);
     assert_int_equal(fmb_body_make_hull(3, point, 3, point_memory, &single), FMB_OK);
     assert_int_equal(fmb_decide(fmb_method_by_name("exact"), &a, &b, 0, 0, &answer), FMB_OK);
     return answer.verdict != FMB_SEPARATED;
+}
+
+static bool is_in_hull(const double (*vertex)[3], size_t count, const double point[3])
+{
+    return is_in_rounded(vertex, count, 0, point);
 }
 
 /* Checks that the vertices are minimal and that their hull contains all points. Returns their
@@ -358,6 +365,49 @@ static void hulls_of_too_many_vertices_are_refused(void **state)
         assert_int_equal(found, extra ? 0 : FMB_HULL_VERTICES_MAX);
         point_count = 0;
     }
+}
+
+/* At most this many vertices, or this excess; the radius is tight. */
+static void check_cover(size_t most, double excess)
+{
+    static double vertex[FMB_HULL_VERTICES_MAX][3];
+    size_t found, next = 0, outside = 0;
+    double radius;
+    assert_int_equal(mesh_hull_cover((const double(*)[3]) points, point_count, most, excess, vertex,
+                                     &found, &radius),
+                     FMB_OK);
+    assert_true(found >= 1 && found <= most && (radius <= excess || found == most));
+    for (size_t i = 0; i < point_count; i++) {
+        next += next < found && memcmp(vertex[next], points[i], sizeof points[i]) == 0;
+        assert_true(is_in_rounded((const double(*)[3]) vertex, found, radius, points[i]));
+        outside +=
+            !is_in_rounded((const double(*)[3]) vertex, found, radius * (1 - 1e-6), points[i]);
+    }
+    assert_int_equal(next, found); /* in their order */
+    assert_true(radius == 0 || outside > 0);
+    point_count = 0;
+}
+
+static void covers_contain_all_points(void **state)
+{
+    struct draw draw;
+    draw_begin(&draw, "covers");
+    const long count = draw_sample(40);
+    for (long i = 0; i < count; i++) {
+        const int n = draw_int(&draw, 1, 40), extent = draw_int(&draw, 0, 3);
+        const double scale = i % 4 == 0 ? 0x1p-300 : 1;
+        double at[3];
+        for (int k = 0; k < n; k++) {
+            draw_integers(&draw, 3, -extent, extent, at);
+            if (i % 3 == 0)
+                at[0] = draw_uniform(&draw, -1, 1);
+            add_point(scale * at[0], scale * at[1] / 3, scale * (at[0] + at[2]));
+        }
+        check_cover((size_t) draw_int(&draw, 1, 40), draw_int(&draw, 0, 2) * 0.5 * scale);
+    }
+    for (int i = 0; i < 40 * 40; i++)
+        add_point(i % 40, i / 40, (i % 40) * (i % 40) + (i / 40) * (i / 40));
+    check_cover(200, 0.25);
 }
 
 /* ---- Poses ----------------------------------------------------------------------------------- */
@@ -497,6 +547,7 @@ int main(void)
         cmocka_unit_test(hulls_of_grids_keep_only_their_corners),
         cmocka_unit_test(hulls_of_random_points_contain_them_all),
         cmocka_unit_test(hulls_of_too_many_vertices_are_refused),
+        cmocka_unit_test(covers_contain_all_points),
         cmocka_unit_test(turns_by_multiples_of_45_degrees_are_even),
         cmocka_unit_test(turns_agree_with_the_math_library),
         cmocka_unit_test(poses_of_links_agree_with_matrices),
