@@ -159,6 +159,7 @@ int main(int argc, char **argv)
     poses_run(&bench);
     gaps_run(&bench);
     hulls_run(&bench);
+    radii_run(&bench);
     worst_run(&bench);
     print_noise(pinned);
     const bool complete = fclose(bench.json.out) == 0;

@@ -44,6 +44,7 @@ void contacts_run(struct bench *bench); /* contacts */
 void poses_run(struct bench *bench);    /* poses */
 void gaps_run(struct bench *bench);     /* gaps */
 void hulls_run(struct bench *bench);    /* hulls */
+void radii_run(struct bench *bench);    /* radii; in hulls.c */
 void worst_run(struct bench *bench);    /* worst */
 
 #endif

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const char *const sections[] = {"cells", "box",   "contacts", "poses",
-                                       "gaps",  "hulls", "worst"};
+                                       "gaps",  "hulls", "radii",    "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

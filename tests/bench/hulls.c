@@ -1,5 +1,5 @@
-/* What hulls cost: verdicts, boxes and gaps near contact and far from it, beside other libraries,
- * and how often these are wrong. */
+/* What hulls and shapes with a radius cost: verdicts, boxes and gaps near contact and far from it,
+ * beside other libraries, and how often these are wrong. */
 #include "bench.h"
 
 #include <math.h>
@@ -9,30 +9,59 @@
 #include "rings.h"
 #include "solids.h"
 
+#define COUNT(array) ((int) (sizeof(array) / sizeof(array)[0]))
+
 /* ---- Pairs ---- */
 
 /* Where A's point farthest along a direction and B's farthest against it are so far apart that far
- * along it: this is the distance, or at least the depth. Random directions; or no orientations, and
- * multiples of 2^-20, so that they touch exactly; or a face on a face. */
+ * along it: this is the distance, or at least the depth. Random directions, or, of a pair with one
+ * radius, the normal of a face; or no orientations, and multiples of 2^-20, so that they touch
+ * exactly; or a face on a face. */
 enum place { ANY, EXACT, TILTED };
 
-static const struct contact {
+struct contact {
     const char *name;
     double gap;
     enum place place;
-} contacts[] = {{"random, apart", 1, ANY},      {"gap 1e-3", 1e-3, ANY},
-                {"gap 1e-9", 1e-9, ANY},        {"touch, exactly", 0, EXACT},
-                {"resting, tilted", 0, TILTED}, {"overlap 1e-9", -1e-9, ANY},
-                {"overlap 1e-3", -1e-3, ANY},   {"random, deep", -0.5, ANY}};
+};
 
-static const struct kind {
+static const struct contact contacts[] = {
+    {"random, apart", 1, ANY},    {"gap 1e-3", 1e-3, ANY},        {"gap 1e-9", 1e-9, ANY},
+    {"touch, exactly", 0, EXACT}, {"resting, tilted", 0, TILTED}, {"overlap 1e-9", -1e-9, ANY},
+    {"overlap 1e-3", -1e-3, ANY}, {"random, deep", -0.5, ANY}};
+
+static const struct contact round_contacts[] = {
+    {"random, apart", 1, ANY},      {"gap 1e-3", 1e-3, ANY},      {"gap 1e-6", 1e-6, ANY},
+    {"gap 1e-9", 1e-9, ANY},        {"gap 1e-12", 1e-12, ANY},    {"touch, exactly", 0, EXACT},
+    {"overlap 1e-12", -1e-12, ANY}, {"overlap 1e-9", -1e-9, ANY}, {"overlap 1e-6", -1e-6, ANY},
+    {"overlap 1e-3", -1e-3, ANY},   {"random, deep", -0.5, ANY}};
+
+/* Rings: a hull. No rings, and no sectors: a box; one sector: a sphere; two: a capsule. */
+struct kind {
     const char *name;
-    struct rings rings[2]; /* none: a box */
-} kinds[] = {{"8 + 8", {{2, 3}, {2, 3}}},         {"20 + 20", {{3, 6}, {3, 6}}},
-             {"50 + 50", {{6, 8}, {6, 8}}},       {"152 + 102", {{10, 15}, {10, 10}}},
-             {"498 + 498", {{16, 31}, {16, 31}}}, {"152 + box", {{10, 15}, {0, 0}}}};
+    struct rings rings[2];
+};
 
-enum { KINDS = sizeof kinds / sizeof *kinds, CONTACTS = sizeof contacts / sizeof *contacts };
+static const struct kind kinds[] = {
+    {"8 + 8", {{2, 3}, {2, 3}}},         {"20 + 20", {{3, 6}, {3, 6}}},
+    {"50 + 50", {{6, 8}, {6, 8}}},       {"152 + 102", {{10, 15}, {10, 10}}},
+    {"498 + 498", {{16, 31}, {16, 31}}}, {"152 + box", {{10, 15}, {0, 0}}}};
+
+static const struct kind round_kinds[] = {
+    {"sphere + box", {{0, 1}, {0, 0}}},     {"sphere + 100", {{0, 1}, {7, 14}}},
+    {"capsule + box", {{0, 2}, {0, 0}}},    {"capsule + 100", {{0, 2}, {7, 14}}},
+    {"sphere + sphere", {{0, 1}, {0, 1}}},  {"sphere + capsule", {{0, 1}, {0, 2}}},
+    {"capsule + capsule", {{0, 2}, {0, 2}}}};
+
+static bool is_round(struct rings rings)
+{
+    return rings.rings == 0 && rings.sectors > 0;
+}
+
+static int vertices_of(struct rings rings)
+{
+    return rings.rings ? rings_vertices(rings) : rings.sectors ? rings.sectors : 8;
+}
 
 /* Pair i is body i and body count + i; after these, as many for warming up. */
 struct hulls {
@@ -45,9 +74,10 @@ struct hulls {
     int *face[2];
     unsigned (*pair)[2]; /* [2 count] */
     struct peers *peers;
-    unsigned char *verdict; /* [2 count] */
-    struct fmb_gap *gap;    /* [2 count] */
-    double *peer_gap;       /* [2 count] */
+    unsigned char *verdict;   /* [2 count] */
+    struct fmb_gap *gap;      /* [2 count] */
+    double *peer_gap;         /* [2 count] */
+    struct fmb_answer *truth; /* [count], by the method exact */
 };
 
 enum { VERTICES = 512 };
@@ -56,9 +86,9 @@ enum { VERTICES = 512 };
 struct draft {
     struct rings rings;
     int count;
-    double vertex[VERTICES][3]; /* body coordinates; those of a box too */
+    double vertex[VERTICES][3]; /* body coordinates; those of a box too, or of a core */
     double turned[VERTICES][3]; /* by the orientation */
-    double half[3], orientation[4], position[3];
+    double half[3], radius, orientation[4], position[3];
 };
 
 static void turn(const double q[4], const double *v, double *out)
@@ -93,16 +123,22 @@ static void turn_all(struct draft *draft)
         turn(draft->orientation, draft->vertex[v], draft->turned[v]);
 }
 
-static void draw_draft(struct draw *draw, struct rings rings, bool turned, struct draft *out)
+/* A radius is a multiple of that number. */
+static void draw_draft(struct draw *draw, struct rings rings, bool turned, double radius,
+                       struct draft *out)
 {
-    *out = (struct draft){.rings = rings, .count = rings.sectors ? rings_vertices(rings) : 8};
+    *out = (struct draft){.rings = rings, .count = vertices_of(rings)};
     for (int axis = 0; axis < 3; axis++)
         out->half[axis] = ldexp(draw_int(draw, 1 << 18, 1 << 20), -20);
-    if (rings.sectors)
+    if (is_round(rings))
+        out->radius = draw_int(draw, 1 << 14, 1 << 16) * radius;
+    if (rings.rings)
         rings_points(rings, out->half, out->vertex);
     for (int v = 0; v < out->count && !rings.sectors; v++)
         for (int axis = 0; axis < 3; axis++)
             out->vertex[v][axis] = (v >> axis & 1 ? 1 : -1) * out->half[axis];
+    for (int v = 0; v < out->count && out->count == 2; v++)
+        out->vertex[v][2] = (v ? 1 : -1) * out->half[2];
     draw_unit(draw, 4, out->orientation);
     if (!turned)
         memcpy(out->orientation, (const double[4]){1}, sizeof out->orientation);
@@ -152,12 +188,26 @@ static const double *farthest(const struct draft *draft, const double *way, doub
     return draft->turned[best];
 }
 
+/* Draws a direction of three whole numbers whose length is whole. Returns the length. */
+static double draw_whole(struct draw *draw, double *out)
+{
+    static const int known[][4] = {{1, 2, 2, 3}, {2, 3, 6, 7}, {1, 4, 8, 9}, {4, 4, 7, 9}};
+    const int *one = known[draw_int(draw, 0, 3)], first = draw_int(draw, 0, 2);
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = one[(first + axis) % 3] * (draw_coin(draw) ? 1 : -1);
+    return one[3];
+}
+
 static void draw_pair(struct draw *draw, const struct kind *kind, const struct contact *contact,
                       struct draft draft[2])
 {
-    double way[3] = {1}, points[2][3];
+    double way[3] = {1}, points[2][3], length = 1;
+    const bool is[2] = {is_round(kind->rings[0]), is_round(kind->rings[1])};
+    if (is[0] && contact->place == EXACT)
+        length = draw_whole(draw, way);
     for (int side = 0; side < 2; side++)
-        draw_draft(draw, kind->rings[side], contact->place != EXACT, &draft[side]);
+        draw_draft(draw, kind->rings[side], contact->place != EXACT, ldexp(length, -18),
+                   &draft[side]);
     if (contact->place == TILTED) {
         double normal[3];
         first_face(&draft[0], points[0], way);
@@ -165,13 +215,19 @@ static void draw_pair(struct draw *draw, const struct kind *kind, const struct c
         turn_to(&draft[1], normal, (const double[3]){-way[0], -way[1], -way[2]});
         first_face(&draft[1], points[1], normal);
     } else {
+        const bool faced = contact->place == ANY && is[0] && !is[1] && draw_coin(draw);
         if (contact->place == ANY)
             draw_unit(draw, 3, way);
-        memcpy(points[0], farthest(&draft[0], way, 1), sizeof points[0]);
         memcpy(points[1], farthest(&draft[1], way, -1), sizeof points[1]);
+        if (faced) {
+            first_face(&draft[1], points[1], way);
+            vector_add(way, -2, (const double[3]){way[0], way[1], way[2]});
+        }
+        memcpy(points[0], farthest(&draft[0], way, 1), sizeof points[0]);
     }
+    const double apart = (contact->gap + draft[0].radius + draft[1].radius) / length;
     for (int axis = 0; axis < 3; axis++)
-        draft[1].position[axis] = points[0][axis] - points[1][axis] + contact->gap * way[axis];
+        draft[1].position[axis] = points[0][axis] - points[1][axis] + apart * way[axis];
 }
 
 /* ---- Their bodies ---- */
@@ -183,10 +239,16 @@ static void make_solid(const struct draft *draft, const int *face, double (*worl
     memcpy(out->centre, draft->position, sizeof out->centre);
     memcpy(out->origin, draft->position, sizeof out->origin);
     memcpy(world, draft->turned, (size_t) draft->count * sizeof *world);
+    out->radius = draft->radius;
+    for (int i = 0; i < 3; i++) {
+        out->size[i] = 2 * draft->half[i];
+        turn(draft->orientation, (const double[3]){i == 0, i == 1, i == 2}, out->axis[i]);
+    }
     if (draft->rings.sectors) {
         out->hull = (const double(*)[3]) world;
         out->face = face;
-        rings_faces(draft->rings, NULL, &out->faces);
+        if (draft->rings.rings)
+            rings_faces(draft->rings, NULL, &out->faces);
         return;
     }
     out->box = true;
@@ -195,10 +257,8 @@ static void make_solid(const struct draft *draft, const int *face, double (*worl
     for (int v = 0; v < 8; v++)
         vector_add(out->vertex[v], 1, draft->position);
     for (int i = 0; i < 3; i++) {
-        out->size[i] = 2 * draft->half[i];
         memcpy(out->component[i], world[1 << i], sizeof out->component[i]);
         vector_add(out->component[i], -1, world[0]);
-        vector_add(out->axis[i], 1 / out->size[i], out->component[i]);
     }
 }
 
@@ -217,7 +277,8 @@ static void make_body(struct hulls *hulls, const struct draft *draft, size_t i, 
     *placement = (struct fmb_placement){.body = &hulls->body[at], .orientation_count = 4};
     memcpy(placement->position, draft->position, sizeof draft->position);
     memcpy(placement->orientation, draft->orientation, sizeof draft->orientation);
-    if (status != FMB_OK || fmb_prepare(placement, 0, 1, &hulls->prepared[at]) != FMB_OK) {
+    if (status != FMB_OK || fmb_body_inflate(&hulls->body[at], draft->radius) != FMB_OK ||
+        fmb_prepare(placement, 0, 1, &hulls->prepared[at]) != FMB_OK) {
         fputs("bench: a hull is refused\n", stderr);
         exit(EXIT_FAILURE);
     }
@@ -239,10 +300,11 @@ static void hulls_open(const struct bench *bench, const struct kind *kind,
                           .pair = scene_allocate(2 * count, sizeof *out->pair),
                           .verdict = scene_allocate(2 * count, 1),
                           .gap = scene_allocate(2 * count, sizeof *out->gap),
-                          .peer_gap = scene_allocate(2 * count, sizeof *out->peer_gap)};
+                          .peer_gap = scene_allocate(2 * count, sizeof *out->peer_gap),
+                          .truth = scene_allocate(count, sizeof *out->truth)};
     for (int side = 0; side < 2; side++) {
         const struct rings rings = kind->rings[side];
-        const size_t vertices = rings.sectors ? (size_t) rings_vertices(rings) : 8;
+        const size_t vertices = (size_t) vertices_of(rings);
         int faces;
         out->memory[side] = scene_allocate(count * fmb_hull_doubles(3, vertices), sizeof(double));
         out->world[side] = scene_allocate(count * vertices, sizeof *out->world[side]);
@@ -275,6 +337,7 @@ static void hulls_close(struct hulls *hulls)
     free(hulls->solid);
     free(hulls->pair);
     free(hulls->verdict);
+    free(hulls->truth);
     free(hulls->gap);
     free(hulls->peer_gap);
 }
@@ -302,6 +365,13 @@ static void decide(struct hulls *hulls, size_t first, size_t count, unsigned wan
         if (want & FMB_WANT_GAP)
             hulls->gap[i] = answer.gap;
     }
+}
+
+static void decide_truth(struct hulls *hulls)
+{
+    for (size_t i = 0; i < hulls->count; i++)
+        fmb_decide(fmb_method_by_name("exact"), &hulls->placement[hulls->pair[i][0]],
+                   &hulls->placement[hulls->pair[i][1]], 0, FMB_WANT_GAP, &hulls->truth[i]);
 }
 
 static void query(struct hulls *hulls, size_t first, size_t count)
@@ -378,24 +448,53 @@ static void time_runs(const struct bench *bench, struct hulls *hulls, const int 
         out[k] = spread_of(times[k], blocks);
 }
 
-/* The share of a peer's answers that contradict the certified ones: in whether the two meet, or by
- * more than 1e-9 in the gap. No answer is wrong too; touching is contact, in which any sign will
- * do. */
-static double wrong_of(const struct hulls *hulls)
+/* Whether a peer's answer contradicts the true one: in whether the two meet, or by more than far in
+ * the gap. No answer is wrong too; touching is contact, but may have a gap of any sign. */
+static bool is_wrong_of_peer(double gap, const struct fmb_answer *truth, double far)
+{
+    const double *bounds = truth->gap.bounds;
+    const bool contradicts = (truth->verdict == FMB_SEPARATED) != (gap > 0);
+    if (isinf(gap))
+        return contradicts;
+    return (contradicts && truth->verdict != FMB_TOUCHING) ||
+           !(gap >= bounds[0] - far && gap <= bounds[1] + far);
+}
+
+/* The same of the engine, whose enclosure of the gap may not exclude the true one. */
+static bool is_wrong(const struct hulls *hulls, size_t i, int k)
+{
+    const struct fmb_answer *truth = &hulls->truth[i];
+    const double *bounds = hulls->gap[i].bounds, *true_bounds = truth->gap.bounds;
+    return hulls->verdict[i] != truth->verdict ||
+           (own[k].run == query_gap &&
+            !(bounds[0] <= true_bounds[1] && bounds[1] >= true_bounds[0]));
+}
+
+/* The share of answers that are wrong. */
+static double wrong_of(struct hulls *hulls, int k, double far)
 {
     size_t wrong = 0;
-    for (size_t i = 0; i < hulls->count; i++) {
-        const double gap = hulls->peer_gap[i], *bounds = hulls->gap[i].bounds;
-        const bool separated = hulls->verdict[i] == FMB_SEPARATED;
-        wrong += isinf(gap) ? separated != (gap > 0)
-                            : !(gap >= bounds[0] - 1e-9 && gap <= bounds[1] + 1e-9);
-    }
+    run(hulls, k, 0, hulls->count);
+    for (size_t i = 0; i < hulls->count; i++)
+        wrong += k < OWN_RUNS ? is_wrong(hulls, i, k)
+                              : is_wrong_of_peer(hulls->peer_gap[i], &hulls->truth[i], far);
     return (double) wrong / (double) hulls->count;
+}
+
+/* The share of pairs that touch. */
+static double touching_of(const struct hulls *hulls)
+{
+    size_t touching = 0;
+    for (size_t i = 0; i < hulls->count; i++)
+        touching += hulls->truth[i].verdict == FMB_TOUCHING;
+    return (double) touching / (double) hulls->count;
 }
 
 /* ---- Tables ---- */
 
-static void row(struct bench *bench, const struct kind *kind, const struct contact *contact)
+/* far: a gap that is off by more is wrong. */
+static void row(struct bench *bench, const struct kind *kind, const struct contact *contact,
+                double far)
 {
     struct hulls hulls;
     struct spread ns[RUNS_MAX];
@@ -406,23 +505,18 @@ static void row(struct bench *bench, const struct kind *kind, const struct conta
     bench_progress(name);
     hulls_open(bench, kind, contact, &hulls);
     time_runs(bench, &hulls, runs, count, ns);
-    query_gap(&hulls, 0, hulls.count);
+    decide_truth(&hulls);
     bench_progress(NULL);
-    printf("%-26s", name);
+    printf("%-32s", name);
     json_begin(&bench->json, NULL, '{');
     json_number(&bench->json, "dim", 3);
     json_bool(&bench->json, "moving", false);
     json_string(&bench->json, "pairs_are", name);
+    json_number(&bench->json, "touching", touching_of(&hulls));
     json_begin(&bench->json, "methods", '[');
     for (int k = 0; k < count; k++) {
-        double wrong = 0;
-        if (runs[k] >= OWN_RUNS) {
-            run(&hulls, runs[k], 0, hulls.count);
-            wrong = wrong_of(&hulls);
-        }
-        printf(" %s %.0f", run_name(runs[k]), ns[k].median);
-        if (runs[k] >= OWN_RUNS)
-            printf(" (%.1f %%)", 100 * wrong);
+        const double wrong = wrong_of(&hulls, runs[k], far);
+        printf(" %s %.0f (%.1f %%)", run_name(runs[k]), ns[k].median, 100 * wrong);
         json_begin(&bench->json, NULL, '{');
         json_string(&bench->json, "name", run_name(runs[k]));
         json_number(&bench->json, "ns", ns[k].median);
@@ -445,12 +539,28 @@ void hulls_run(struct bench *bench)
         "\nHulls by their vertices, whose numbers come last; nanoseconds a pair at rest,\n"
         "distinct pairs, all in turn. batch: verdicts of prepared frames; query: fmb_decide() of\n"
         "placements; +box, +gap: with these. Others are given the vertices turned, and rounded.\n"
-        "In parentheses, the percentage of their answers that are wrong: in whether the two meet,\n"
-        "or off by more than 1e-9 where they give a gap.\n");
+        "In parentheses, the percentage of answers that are wrong: in whether the two meet, or\n"
+        "off by more than 1e-9 where another library gives a gap.\n");
     peers_help();
     json_begin(&bench->json, "hulls", '[');
-    for (int i = 0; i < KINDS; i++)
-        for (int k = 0; k < CONTACTS; k++)
-            row(bench, &kinds[i], &contacts[k]);
+    for (int i = 0; i < COUNT(kinds); i++)
+        for (int k = 0; k < COUNT(contacts); k++)
+            row(bench, &kinds[i], &contacts[k], 1e-9);
+    json_end(&bench->json, ']');
+}
+
+void radii_run(struct bench *bench)
+{
+    if (!bench_wants(bench, "radii"))
+        return;
+    printf(
+        "\nShapes with a radius, and boxes and hulls of 100 vertices; the same runs and numbers.\n"
+        "Others have their own spheres and capsules, or a support function. A gap is wrong if\n"
+        "it is off by more than 1e-6, or if its sign is wrong.\n");
+    peers_help();
+    json_begin(&bench->json, "radii", '[');
+    for (int i = 0; i < COUNT(round_kinds); i++)
+        for (int k = 0; k < COUNT(round_contacts); k++)
+            row(bench, &round_kinds[i], &round_contacts[k], 1e-6);
     json_end(&bench->json, ']');
 }

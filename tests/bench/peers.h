@@ -10,19 +10,21 @@
 extern "C" {
 #endif
 
-/* A cuboid, box or tetrahedron (2D: parallelogram, rectangle, triangle), or a hull, in world
- * coordinates. */
+/* A cuboid, box or tetrahedron (2D: parallelogram, rectangle, triangle), or a hull, a sphere or a
+ * capsule, in world coordinates. */
 struct peer_solid {
     int dim;
     bool box;  /* its components are at right angles */
     int count; /* of vertices: 2^dim, or dim + 1 of a simplex */
     const double (
         *hull)[3];   /* [count]: its vertices, about centre; it has no others. NULL: no hull */
+    double radius;   /* of a sphere, a hull of one vertex, and a capsule, of two; else 0 */
     const int *face; /* of a hull: the number of vertices of a face, their indices, the next face */
     int faces;
     double origin[3], component[3][3], vertex[8][3];
-    double centre[3], size[3], axis[3][3]; /* of a box: components are size times unit axis */
-    double velocity[3];                    /* during [0, 1] */
+    /* Of a box: components are size times unit axis. A capsule has this size and axis, number 2. */
+    double centre[3], size[3], axis[3][3];
+    double velocity[3]; /* during [0, 1] */
 };
 
 /* ---- All of them ---- */
@@ -32,7 +34,7 @@ enum { PEERS_MAX = 16 };
 struct peers;
 
 /* The solids must outlive the peers. Unless all of them are in 3D, no library is opened. If one is
- * a hull, only libraries that take hulls may be run. */
+ * a hull, only libraries that take hulls, and shapes with a radius, may be run. */
 struct peers *peers_open(const struct peer_solid *solid, size_t count);
 void peers_close(struct peers *peers);
 

@@ -11,7 +11,7 @@ setup() {
 @test "bench --quick measures every section, in every cell, by every method" {
     run "$BENCH" --quick --json "$JSON"
     [ "$status" = 0 ]
-    holds "$JSON" 'all(.cells, .box, .contacts, .poses, .rest, .gaps, .hulls, .worst; length > 0)' \
+    holds "$JSON" 'all(.cells, .box, .contacts, .poses, .rest, .gaps, .hulls, .radii, .worst; length > 0)' \
         '[.cells[] | [.dim, .moving, .shapes, .contact]] | unique | length == 32' \
         'all(.cells[]; [.methods[].name] | contains(["batch", "single", "query", "fmb", "sat", "exact"]))' \
         'all(.cells[].methods[]; .ns > 0 and .low <= .ns and .ns <= .high)' \
@@ -20,7 +20,10 @@ setup() {
         '[.gaps[] | [.kind, .gap]] | unique | length == 32' \
         'all(.gaps[]; [.runs[].name] | contains(["batch", "single", "query"]))' \
         '[.hulls[].pairs_are] | unique | length == 48' \
-        'all(.hulls[]; [.methods[].name] | contains(["batch", "query", "query+box", "query+gap"]))'
+        '[.radii[].pairs_are] | unique | length == 77' \
+        'all(.hulls[], .radii[]; [.methods[].name] | contains(["batch", "query", "query+box", "query+gap"]))' \
+        'all(.hulls[], .radii[] | select(.pairs_are | startswith("touch, exactly")); .touching == 1)' \
+        'all((.hulls[], .radii[]).methods[] | select(.name | test("batch|query")); .wrong == 0)'
     # Certified verdicts are right; the other methods are right about random pairs, not about all; what
     # other libraries have here is nearly right about random pairs.
     holds "$JSON" '[.contacts[] | [.dim, .moving, .shapes, .pairs_are]] | unique | length == 140' \

@@ -1,6 +1,8 @@
-/* Bullet, margin 0: boxes as boxes, other solids as convex hulls. */
+/* Bullet, margin 0: boxes, spheres and capsules as such, other solids as convex hulls. */
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btPointCollector.h>
@@ -46,6 +48,15 @@ std::unique_ptr<btConvexShape> hull_of(const peer_solid &solid)
 Body body_of(const peer_solid &solid)
 {
     Body out = {nullptr, btTransform::getIdentity(), vector_of(solid.velocity)};
+    if (solid.radius > 0) { /* their margin is the radius */
+        const auto radius = btScalar(solid.radius);
+        out.pose = pose_of(solid);
+        if (solid.count == 1)
+            out.shape = std::make_unique<btSphereShape>(radius);
+        else
+            out.shape = std::make_unique<btCapsuleShapeZ>(radius, btScalar(solid.size[2]));
+        return out;
+    }
     if (solid.box) {
         out.shape = std::make_unique<btBoxShape>(vector_of(solid.size) / 2);
         out.pose = pose_of(solid);

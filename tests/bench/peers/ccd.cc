@@ -44,9 +44,10 @@ void add_farthest_of_simplex(const peer_solid &solid, const ccd_vec3_t *way, ccd
         add(out, farthest);
 }
 
-/* Its support functions scan all vertices. */
+/* Its support functions scan all vertices, and add the radius along the direction. */
 void add_farthest_of_hull(const peer_solid &solid, const ccd_vec3_t *way, ccd_vec3_t *out)
 {
+    const double length = std::sqrt(dot(way->v, way));
     int farthest = 0;
     double most = -HUGE_VAL;
     for (int i = 0; i < solid.count; i++) {
@@ -55,6 +56,8 @@ void add_farthest_of_hull(const peer_solid &solid, const ccd_vec3_t *way, ccd_ve
         most = std::fmax(most, along);
     }
     add(out, solid.hull[farthest]);
+    for (int axis = 0; axis < 3 && solid.radius > 0; axis++)
+        out->v[axis] += solid.radius / length * way->v[axis];
 }
 
 void support(const void *object, const ccd_vec3_t *way, ccd_vec3_t *out)

@@ -1,4 +1,4 @@
-/* FCL: boxes as boxes, other solids as convex meshes. */
+/* FCL: boxes, spheres and capsules as such, other solids as convex meshes. */
 #include <fcl/fcl.h>
 
 #include <memory>
@@ -12,14 +12,21 @@ namespace
 
 using Object = std::unique_ptr<fcl::CollisionObjectd>;
 
-Object box_of(const peer_solid &solid)
+/* A box, a sphere or a capsule. */
+Object primitive_of(const peer_solid &solid)
 {
+    std::shared_ptr<fcl::CollisionGeometryd> shape;
     fcl::Transform3d pose = fcl::Transform3d::Identity();
     for (int i = 0; i < 3; i++)
         pose.linear().col(i) = fcl::Vector3d(solid.axis[i]);
     pose.translation() = fcl::Vector3d(solid.centre);
-    return std::make_unique<fcl::CollisionObjectd>(
-        std::make_shared<fcl::Boxd>(fcl::Vector3d(solid.size)), pose);
+    if (solid.box)
+        shape = std::make_shared<fcl::Boxd>(fcl::Vector3d(solid.size));
+    else if (solid.count == 1)
+        shape = std::make_shared<fcl::Sphered>(solid.radius);
+    else
+        shape = std::make_shared<fcl::Capsuled>(solid.radius, solid.size[2]);
+    return std::make_unique<fcl::CollisionObjectd>(shape, pose);
 }
 
 Object mesh_of(const peer_solid &solid)
@@ -62,9 +69,9 @@ Object hull_of(const peer_solid &solid)
 
 Object object_of(const peer_solid &solid)
 {
-    if (solid.hull)
-        return hull_of(solid);
-    return solid.box ? box_of(solid) : mesh_of(solid);
+    if (solid.box || solid.radius > 0)
+        return primitive_of(solid);
+    return solid.hull ? hull_of(solid) : mesh_of(solid);
 }
 
 fcl::CollisionObjectd *object(void *bodies, size_t i)
@@ -104,8 +111,8 @@ const peer methods[] = {{"fcl", PEER_VERDICT, PEER_HULLS, collide},
 
 const peer_library peer_library_fcl = {
     methods, sizeof methods / sizeof *methods,
-    "fcl: fcl::collide() of boxes and, by its own GJK, of convex meshes (the default, libccd's\n"
-    "MPR, does not end for some pairs); fcl distance, fcl 1e-10: fcl::distance() at the\n"
-    "default tolerance of 1e-6 and at 1e-10; no depth: its signed distance ends the program\n"
-    "by a failed assertion for some overlapping pairs.",
+    "fcl: fcl::collide() of boxes, spheres and capsules and, by its own GJK, of convex meshes\n"
+    "(the default, libccd's MPR, does not end for some pairs); fcl distance, fcl 1e-10:\n"
+    "fcl::distance() at the default tolerance of 1e-6 and at 1e-10; no depth: its signed\n"
+    "distance ends the program by a failed assertion for some overlapping pairs.",
     bodies_open<Object, object_of>, bodies_close<Object>};
