@@ -160,9 +160,9 @@ see_clients/exchange := clients/log $(see_clients/log)
 see_clients/page := clients/exchange $(see_clients/exchange)
 see_clients/record := clients/log $(see_clients/log)
 see_clients/mesh := clients/page clients/common clients/lib msgs/common msgs/codec service/fmb
-see_clients/scene := clients/mesh clients/common clients/lib msgs/codec msgs/common service/fmb
+see_clients/robot := clients/mesh clients/common clients/lib msgs/codec msgs/common service/fmb
 see_clients/replay := clients/page clients/exchange service/answer $(see_clients/exchange)
-see_clients := $(addprefix clients/,query record mesh scene replay) $(see_clients/replay)
+see_clients := $(addprefix clients/,query record mesh robot replay) $(see_clients/replay)
 see_clients/demo :=
 see_clients/examples := clients/lib msgs/codec service/fmb
 see_clients/python := clients/lib $(wire)
@@ -224,7 +224,7 @@ $(O)/msgs/%.o: $(GEN)/%.c $(O)/settings | $(message_headers)
 wire_objects := $(call objects_in,$(filter-out service/fmb,$(wire))) $(message_objects)
 client_objects := $(call objects_in,clients/lib clients/python)
 product_objects := $(filter-out %/main.o %/fmb.o,$(wire_objects) $(call objects_in,service service/answer clients \
-	$(addprefix clients/,common query log exchange page record mesh scene replay))) \
+	$(addprefix clients/,common query log exchange page record mesh robot replay))) \
 	$(addprefix $(O)/clients/lib/,enclosure.o pose.o turn.o) # the library shows them to nobody
 
 # Of unmerged archives the linker takes what a program needs; what stands before them on its command
@@ -267,12 +267,16 @@ $(B)/libfmb.a: $(engine_objects)
 	$(call library,fmb_*)
 $(B)/libfmb-client.a: $(client_objects) $(wire_objects)
 	$(call library,fmb_client_* fmb_flat_*)
+# Of the other folders the linker takes what these objects need.
+$(B)/libfmb-robot.a: $(filter-out %/joints.o,$(call objects_in,clients/robot)) $(product)
+	$(call library,fmb_robot_*)
 
 # The same as shared libraries, with the names of their headers alone.
-shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0
+shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0 $(B)/libfmb-robot.so.0
 $(B)/libfmb.so.0: shared_needs := -lgmp -lm
 $(B)/libfmb-client.so.0: shared_needs := $(B)/libfmb.so.0 -llcm -lglib-2.0 -lm
-$(B)/libfmb-client.so.0: $(B)/libfmb.so.0
+$(B)/libfmb-robot.so.0: shared_needs := $(B)/libfmb.so.0 -lexpat -lcjson -lm
+$(B)/libfmb-client.so.0 $(B)/libfmb-robot.so.0: $(B)/libfmb.so.0
 $(shared_libraries): $(B)/%.so.0: $(B)/%.a
 	@echo '{ local: fmb_client_raw_*; };' > $@.map
 	$(call say,LD,$@) $(CC) $(filter-out -pie -no-pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
@@ -292,7 +296,7 @@ libraries := -lcjson -lexpat -llcm -lglib-2.0 -lseccomp -lz -lgmp -lm
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns
 .PHONY: programs
-programs: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(shared_libraries) $(demo_programs)
+programs: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(B)/libfmb-robot.a $(shared_libraries) $(demo_programs)
 $(programs): linking = $(link_whole)
 $(B)/fmbd: $(O)/service/main.o $(product) $(B)/libfmb.a
 $(B)/fmb: $(O)/clients/fmb.o $(B)/libfmb-client.a $(product) $(B)/libfmb.a
@@ -418,13 +422,13 @@ install: all
 		share/bash-completion/completions lib/systemd/system,"$(root)/$d") \
 		"$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/fmb" "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) $(strip_option) $(programs) "$(root)/bin"
-	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a "$(DESTDIR)$(LIBDIR)"
+	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a $(B)/libfmb-robot.a "$(DESTDIR)$(LIBDIR)"
 	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
 	for name in $(basename $(notdir $(shared_libraries))); do \
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h service/fmb/fmb_batch.h clients/lib/fmb_client.h \
-		clients/python/fmb_flat.h "$(root)/include"
+		clients/robot/fmb_robot.h clients/python/fmb_flat.h "$(root)/include"
 	$(INSTALL) -m 644 clients/python/fmb.py "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) -m 644 $(message_files) "$(root)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(root)/share/doc/fmb"
@@ -434,6 +438,7 @@ install: all
 		"$(root)/share/bash-completion/completions/$$name" || exit; done
 	$(call filled,"$(DESTDIR)$(LIBDIR)/pkgconfig/fmb.pc",$(fill_in) service/fmb/fmb.pc.in)
 	$(call filled,"$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-client.pc",$(fill_in) clients/lib/fmb-client.pc.in)
+	$(call filled,"$(DESTDIR)$(LIBDIR)/pkgconfig/fmb-robot.pc",$(fill_in) clients/robot/fmb-robot.pc.in)
 	for name in fmb-config fmb-config-version; do \
 		$(call filled,"$(DESTDIR)$(LIBDIR)/cmake/fmb/$$name.cmake",$(fill_in) clients/lib/$$name.cmake.in) || exit; done
 	$(call filled,"$(root)/lib/systemd/system/fmbd.service",$(subst %,%%,$(fill_in)) service/fmbd.service.in)
@@ -443,11 +448,12 @@ install-strip: install
 
 uninstall:
 	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_batch.h \
-		include/fmb_client.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
+		include/fmb_client.h include/fmb_robot.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
 		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
 		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd
 	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb.so libfmb.so.0 \
-		libfmb-client.so libfmb-client.so.0 pkgconfig/fmb.pc pkgconfig/fmb-client.pc cmake/fmb
+		libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
+		pkgconfig/fmb.pc pkgconfig/fmb-client.pc pkgconfig/fmb-robot.pc cmake/fmb
 	rm -f "$(DESTDIR)$(PYTHONDIR)"/fmb.py "$(DESTDIR)$(PYTHONDIR)"/__pycache__/fmb.*.pyc
 
 .PHONY: deb deb-test

@@ -5,12 +5,14 @@
 #include "args.h"
 #include "complain.h"
 #include "enclosure.h"
-#include "fmb_client.h"
 #include "joints.h"
+#include "number.h"
 #include "robot_scene.h"
 #include "scene_json.h"
+#include "robot_world.h"
 
 #include <float.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,16 +32,19 @@ static const char usage[] =
     "    fmb query --local --contacts --fail-if overlapping\n"
     "\n"
     "ROBOT.urdf may be '-', standard input. Paths of mesh files are relative to its\n"
-    "folder, or with '-' to the current one.\n"
+    "folder, or with '-' to the current one. A scene is one line.\n"
     "\n"
     "Poses:\n"
     "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths\n"
     "                       of prismatic joints. Without a value, a mimic joint\n"
-    "                       follows the joint that it names; any other has 0\n"
+    "                       follows the joint that it names; any other has 0, or the\n"
+    "                       middle of its limits if 0 is outside\n"
     "  --joints-csv FILE    a table with a column for each joint that moves, named in\n"
     "                       its first line; columns for mimic joints, \"label\" and\n"
     "                       \"time\" are optional. With times, a row lasts until the\n"
-    "                       time of the next row\n"
+    "                       time of the next row. Other columns are ignored\n"
+    "  --base POSE          X,Y,Z or X,Y,Z,ROLL,PITCH,YAW: where the robot stands, as\n"
+    "                       of an <origin>\n"
     "  --limit-slack D      how far values may be outside the limits of their joints,\n"
     "                       in radians or lengths, before they are refused (0.001;\n"
     "                       inf: any). They are used as they are, and reported\n"
@@ -56,31 +61,43 @@ static const char usage[] =
     "                       decompositions\n"
     "  --package-path DIRS  folders to search for packages, separated by colons: a\n"
     "                       mesh file package://NAME/FILE is NAME/FILE in the first\n"
-    "                       folder that has it\n"
+    "                       folder that has it; else FILE in the nearest folder above\n"
+    "                       the robot that is called NAME, or whose package.xml has\n"
+    "                       this name\n"
     "\n"
     "Scenes:\n"
-    "  --with SCENE.json    adds the bodies of a scene, with its ignored pairs,\n"
-    "                       duration and margin. Links have the ids from 1 on; a body\n"
-    "                       with one of these gets another id, which is reported\n"
+    "  --with FILE          adds bodies, may be given several times: a scene of JSON,\n"
+    "                       with its ignored pairs, duration and margin; or a URDF,\n"
+    "                       whose links are obstacles of one group. A body with\n"
+    "                       \"link\": NAME is carried by that link, and has its pose in\n"
+    "                       the link. Links have the ids from 1 on; bodies with one\n"
+    "                       of these get others\n"
+    "  --srdf FILE          ignores the pairs that an SRDF file disables, and no\n"
+    "                       others of the robot\n"
     "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by name;\n"
     "                       may be given several times\n"
-    "  --margin M           the margin, in place of that of the scene\n"
+    "  --margin M           the margin, in place of that of the scenes\n"
+    "  --verbose            names what the messages count\n"
     "  -h, --help\n"
     "\n"
-    "A link is not tested against its parent, or, if that has no body, against the\n"
-    "nearest link above that has one.\n"
+    "Without --srdf, a link is not tested against its parent, or, if that has no\n"
+    "body, against the nearest link above that has one; nor are links that fixed\n"
+    "joints alone connect.\n"
     "\n"
-    "Joints are revolute, continuous, prismatic or fixed. xacro, SRDF and SDF are not\n"
+    "Joints are revolute, continuous, prismatic or fixed. xacro and SDF are not\n"
     "supported. Poses are rounded to doubles: give a margin where that matters.\n"
     "\n"
     "Exit codes: 0 printed; 2 wrong usage, or a file that cannot be read or is not\n"
     "valid: no scene is printed.\n";
 
 struct scene_options {
-    struct robot_body_options body;
+    struct fmb_robot_options robot;
     long sides;
-    const char *joints, *table, *world;
-    const char **ignored; /* owned, [ignored_count]: pairs of names */
+    bool objects, verbose;
+    const char *joints, *table;
+    const char **world; /* owned, [world_count]: files */
+    size_t world_count, world_capacity;
+    const char *(*ignored)[2]; /* owned, [ignored_count]: pairs of names */
     size_t ignored_count, ignored_capacity;
     double margin; /* negative: not given */
     double slack;
@@ -96,20 +113,266 @@ static bool take_once(const struct args *args, void *out)
     return true;
 }
 
-static bool take_ignored(const struct args *args, void *out)
+static bool take_world(const struct args *args, void *out)
 {
     struct scene_options *options = out;
     (void) args;
-    options->ignored = allocate_grow(options->ignored, &options->ignored_capacity,
-                                     options->ignored_count + 1, sizeof *options->ignored);
-    options->ignored[options->ignored_count++] = optarg;
+    options->world = allocate_grow(options->world, &options->world_capacity,
+                                   options->world_count + 1, sizeof *options->world);
+    options->world[options->world_count++] = optarg;
     return true;
 }
 
-/* Places and prints the scenes of all rows; if print is false, only checks them. */
-static bool print_rows(struct robot_scene *scene, struct joint_table *table, bool print)
+/* Takes NAME,NAME, which is divided in place. */
+static bool take_ignored(const struct args *args, void *out)
 {
-    struct fmb_scene *out = &scene->owner.scene;
+    struct scene_options *options = out;
+    char *comma = strchr(optarg, ',');
+    if (!comma)
+        return args_error(args, "--ignore: expected two names, NAME,NAME, found '%s'", optarg);
+    *comma = '\0';
+    options->ignored = allocate_grow(options->ignored, &options->ignored_capacity,
+                                     options->ignored_count + 1, sizeof *options->ignored);
+    options->ignored[options->ignored_count][0] = optarg;
+    options->ignored[options->ignored_count++][1] = comma + 1;
+    return true;
+}
+
+/* Takes X,Y,Z or X,Y,Z,ROLL,PITCH,YAW. */
+static bool take_base(const struct args *args, void *out)
+{
+    struct scene_options *options = out;
+    char *end = optarg;
+    int count = 0;
+    for (bool more = true; more && count < 6; count++) {
+        const char *at = end + (count > 0); /* after a comma */
+        options->robot.base[count] = strtod(at, &end);
+        if (end == at || !isfinite(options->robot.base[count]))
+            return args_error(args, "--base: expected numbers, found '%s'", optarg);
+        more = *end == ',';
+    }
+    if ((count != 3 && count != 6) || *end)
+        return args_error(args, "--base: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, found '%s'",
+                          optarg);
+    return true;
+}
+
+struct run {
+    const struct scene_options *options;
+    struct fmb_robot *robot;
+    struct fmb_robot_scene *scene;
+    struct robot_world *worlds; /* [options->world_count] */
+    struct joints joints;
+    double size[3]; /* of the bodies of links in the first pose, along each axis */
+};
+
+/* ---- What is said on stderr: at most three lines ---- */
+
+static FILE *begin_text(char **text, size_t *size)
+{
+    FILE *out = open_memstream(text, size);
+    if (!out)
+        allocate_failed();
+    return out;
+}
+
+static void end_text(FILE *out, const char *place, char **text)
+{
+    fclose(out);
+    complain("%s%s", place, *text);
+    free(*text);
+}
+
+static void measure(struct run *run)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < run->robot->body_count; i++)
+        robot_bounds(&run->scene->placements[i], low, high);
+    for (int axis = 0; axis < 3; axis++)
+        run->size[axis] = high[axis] - low[axis];
+}
+
+static double excess_of(const struct robot_world *world)
+{
+    return world->robot ? fmb_robot_excess(world->robot) : world->json.outside;
+}
+
+static void say_robot(const struct run *run)
+{
+    double excess = fmb_robot_excess(run->robot);
+    char text[5][NUMBER_TEXT_MAX], more[128] = "", unit[4600] = "";
+    for (int axis = 0; axis < 3; axis++)
+        number_short(run->size[axis], text[axis]);
+    for (size_t w = 0; w < run->options->world_count; w++)
+        excess = fmax(excess, excess_of(&run->worlds[w]));
+    if (excess > 0) /* rounded up */
+        snprintf(more, sizeof more, "; hulls extend beyond what they enclose by at most %s",
+                 number_short(excess * (1 + 1e-5), text[3]));
+    if (run->robot->meshes.scaled > 0)
+        snprintf(
+            unit, sizeof unit,
+            "; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: %s m "
+            "in %s, files: %zu",
+            number_short(run->robot->meshes.first_unit, text[4]), run->robot->meshes.first_file,
+            run->robot->meshes.scaled);
+    complain("%s: links: %zu, with a body: %zu; size: %s x %s x %s%s%s%s", run->robot->tree.path,
+             run->robot->tree.link_count, run->robot->body_count, text[0], text[1], text[2],
+             run->options->table ? " in the first pose" : "", more, unit);
+}
+
+static const char *const origin_names[ROBOT_ORIGINS] = {[ROBOT_NEIGHBOURS] = "neighbours",
+                                                        [ROBOT_SRDF] = "by the SRDF",
+                                                        [ROBOT_SRDF_DEFAULT] = "by its defaults",
+                                                        [ROBOT_CARRIED] = "carried",
+                                                        [ROBOT_WORLD] = "by scenes",
+                                                        [ROBOT_OPTION] = "by --ignore"};
+
+static int compare_groups(const void *x, const void *y)
+{
+    const int64_t a = *(const int64_t *) x, b = *(const int64_t *) y;
+    return (a > b) - (a < b);
+}
+
+/* Returns the number of pairs of one group among the placements from first to end - 1. */
+static unsigned long long count_grouped(const struct fmb_robot_scene *scene, size_t first,
+                                        size_t end)
+{
+    int64_t *group = allocate(end, sizeof *group);
+    unsigned long long count = 0;
+    size_t n = 0, same = 0;
+    for (size_t i = first; i < end; i++)
+        if (scene->placements[i].group != 0)
+            group[n++] = scene->placements[i].group;
+    if (n > 0)
+        qsort(group, n, sizeof *group, compare_groups);
+    for (size_t i = 1; i < n; i++) {
+        same = group[i] == group[i - 1] ? same + 1 : 0;
+        count += same;
+    }
+    free(group);
+    return count;
+}
+
+static void say_srdf(const struct fmb_robot *robot, FILE *out)
+{
+    enum { NAMED = 8 };
+    if (robot->unlisted > 0)
+        fprintf(out, "; tested neighbours that the SRDF does not list: %zu", robot->unlisted);
+    if (robot->unknown_count == 0)
+        return;
+    fprintf(out, "; links of the SRDF that the robot has not: %zu (", robot->unknown_count);
+    const char *at = robot->unknown.text;
+    for (int i = 0; i < NAMED && *at; i++) {
+        const int length = (int) strcspn(at, "\n");
+        fprintf(out, "%s%.*s", i > 0 ? ", " : "", length, at);
+        at += length + (at[length] == '\n');
+    }
+    fprintf(out, "%s)", *at ? ", ..." : "");
+}
+
+static void say_pairs(const struct run *run)
+{
+    const struct fmb_robot_scene *scene = run->scene;
+    const size_t n = scene->owner.scene.placement_count, links = run->robot->body_count;
+    const unsigned long long rigid = count_grouped(scene, 0, links);
+    const unsigned long long grouped = count_grouped(scene, links, n);
+    const unsigned long long ignored = scene->ignored.count + rigid + grouped;
+    size_t count[ROBOT_ORIGINS] = {0}, size;
+    const char *before = ": ";
+    char *text;
+    FILE *out = begin_text(&text, &size);
+    for (size_t i = 0; i < scene->ignored.count; i++)
+        count[scene->ignored.pair[i].origin]++;
+    fprintf(out, "pairs tested: %llu, ignored: %llu",
+            (unsigned long long) n * (n - 1) / 2 - ignored, ignored);
+    for (int origin = 0; origin < ROBOT_ORIGINS; origin++)
+        if (count[origin] > 0) {
+            fprintf(out, "%s%zu %s", before, count[origin], origin_names[origin]);
+            before = ", ";
+        }
+    if (rigid > 0) {
+        fprintf(out, "%s%llu joined rigidly", before, rigid);
+        before = ", ";
+    }
+    if (grouped > 0)
+        fprintf(out, "%s%llu within groups", before, grouped);
+    say_srdf(run->robot, out);
+    end_text(out, "", &text);
+}
+
+/* table: NULL: there is none. */
+static void say_joints(const struct run *run, const struct joint_table *table)
+{
+    char *text;
+    size_t size;
+    FILE *out = begin_text(&text, &size);
+    if (table)
+        joint_table_describe(table, out);
+    joints_describe(&run->joints, out);
+    fclose(out);
+    if (size > 0)
+        complain("%s: %s", table ? run->options->table : "joints", text + (table ? 0 : 2));
+    free(text);
+}
+
+/* Names what the other lines count. */
+static void say_more(const struct run *run)
+{
+    const struct fmb_robot *robot = run->robot;
+    const struct robot *tree = &robot->tree;
+    char text[NUMBER_TEXT_MAX];
+    for (size_t i = 0; i < tree->link_count; i++)
+        if (robot->body_of_link[i] == ROBOT_NO_BODY)
+            complain("%s: link '%s' has no <collision> and no body", tree->path,
+                     tree->links[i].name->name);
+    scene_report_outside(tree->path, robot->owner.outside);
+    if (robot->meshes.rounded > 0) /* rounded up */
+        complain(
+            "%s: hulls of meshes that have fewer vertices and a radius: %zu; they contain the "
+            "meshes, and extend beyond them by at most %s",
+            tree->path, robot->meshes.rounded,
+            number_short(robot->meshes.excess * (1 + 1e-5), text));
+    for (size_t w = 0; w < run->options->world_count; w++)
+        scene_report_outside(run->worlds[w].path, excess_of(&run->worlds[w]));
+    robot_world_print("", robot_lines_text(&run->scene->notes));
+    for (size_t i = 0; i < run->scene->ignored.count; i++) {
+        const struct robot_pair *pair = &run->scene->ignored.pair[i];
+        const struct fmb_placement *a = &run->scene->placements[pair->a];
+        const struct fmb_placement *b = &run->scene->placements[pair->b];
+        complain("ignored: %" PRId64 " %s and %" PRId64 " %s: %s", a->id, a->name ? a->name : "",
+                 b->id, b->name ? b->name : "", origin_names[pair->origin]);
+    }
+    for (size_t i = 0; i < robot->body_count && !robot->srdf; i++)
+        if (robot->rigid[i] != i)
+            complain("joined rigidly: %s and %s", robot->link_names[robot->rigid[i]],
+                     robot->link_names[i]);
+    if (robot->unknown_count > 0)
+        robot_world_print("the robot has no link", robot->unknown.text);
+}
+
+static void say(const struct run *run, const struct joint_table *table)
+{
+    say_robot(run);
+    say_pairs(run);
+    say_joints(run, table);
+    if (run->options->verbose)
+        say_more(run);
+}
+
+/* ---- Scenes ---- */
+
+static bool place(struct run *run, double time, const char *where)
+{
+    const bool good = robot_scene_place(run->scene, run->joints.value, time, where);
+    if (!good)
+        robot_world_print("", robot_lines_text(&run->scene->errors));
+    return good;
+}
+
+/* Places and prints the scenes of all rows; if print is false, only checks them. */
+static bool print_rows(struct run *run, struct joint_table *table, bool print)
+{
+    struct fmb_scene *out = &run->scene->owner.scene;
     const double duration = out->duration;
     enum joint_row row = joint_table_next(table);
     const double begin = table->time;
@@ -118,17 +381,18 @@ static bool print_rows(struct robot_scene *scene, struct joint_table *table, boo
         complain("%s: expected a row of joint values, found none", table->place);
     while (good && row == JOINT_ROW) {
         const double time = table->time;
+        const bool first = table->rows == 1;
         char label[sizeof table->label];
         strcpy(label, table->label);
-        good = table->joints->refused ||
-               robot_scene_place(scene, table->joints->value, table->has_time ? time - begin : 0,
-                                 table->place);
+        good = run->joints.refused || place(run, table->has_time ? time - begin : 0, table->place);
+        if (first && !print)
+            measure(run);
         row = joint_table_next(table);
         out->label = *label ? label : NULL;
         if (table->has_time)
             out->duration = row == JOINT_ROW ? table->time - time : 0;
         if (print)
-            scene_json_write(stdout, &scene->owner);
+            scene_json_write(stdout, &run->scene->owner);
         out->label = NULL;
         good = good && !ferror(stdout);
     }
@@ -136,71 +400,93 @@ static bool print_rows(struct robot_scene *scene, struct joint_table *table, boo
     return good && row != JOINT_ROW_BAD;
 }
 
-static bool print_table(const struct scene_options *options, struct joints *joints,
-                        struct robot_scene *scene)
+static bool print_table(struct run *run)
 {
     struct joint_table table;
-    bool good = joint_table_open(options->table, joints, &table) &&
-                print_rows(scene, &table, false) && joints_report(joints) &&
-                joint_table_rewind(&table);
+    bool good = joint_table_open(run->options->table, &run->joints, &table) &&
+                print_rows(run, &table, false) && joints_check(&run->joints);
     if (good) {
-        robot_scene_report(scene, options->world);
-        good = print_rows(scene, &table, true);
+        say(run, &table);
+        good = joint_table_rewind(&table) && print_rows(run, &table, true);
     }
     joint_table_close(&table);
     return good;
 }
 
-static bool print_robot(const struct scene_options *options, const struct robot *robot,
-                        struct robot_scene *scene)
+static bool print_pose(struct run *run)
 {
-    struct joints joints;
-    bool good = joints_open(robot, options->joints, options->slack, &joints) &&
-                robot_scene_make(robot, &options->body, scene) &&
-                (!options->world || robot_scene_add_world(scene, options->world)) &&
-                robot_scene_ignore(scene, options->ignored, options->ignored_count);
-    if (options->margin >= 0)
-        scene->owner.scene.margin = options->margin;
-    if (good && options->table) {
-        good = print_table(options, &joints, scene);
-    } else if (good) {
-        joints_check(&joints);
-        joints_follow(&joints, robot->path, 0);
-        good = joints_report(&joints) && robot_scene_place(scene, joints.value, 0, robot->path);
-        if (good) {
-            robot_scene_report(scene, options->world);
-            scene_json_write(stdout, &scene->owner);
-        }
+    joints_follow(&run->joints, run->robot->tree.path, 0);
+    if (!joints_check(&run->joints) || !place(run, 0, run->robot->tree.path))
+        return false;
+    measure(run);
+    say(run, NULL);
+    scene_json_write(stdout, &run->scene->owner);
+    return true;
+}
+
+/* Reads the worlds, and makes the scene. */
+static bool make_scene(struct run *run)
+{
+    const struct scene_options *options = run->options;
+    const size_t count = options->world_count;
+    struct fmb_robot_world *world = allocate(count, sizeof *world);
+    bool good = true;
+    for (size_t w = 0; w < count; w++)
+        good = robot_world_read(options->world[w], &options->robot, &run->worlds[w]) && good;
+    robot_world_set_groups(run->worlds, count);
+    for (size_t w = 0; w < count; w++)
+        world[w] = run->worlds[w].world;
+    if (good &&
+        fmb_robot_scene(run->robot, world, count, (const char *const(*)[2]) options->ignored,
+                        options->ignored_count, &run->scene) != 0) {
+        robot_world_print("", fmb_robot_scene_why(run->scene));
+        good = false;
     }
-    joints_clear(&joints);
+    if (good && options->margin >= 0)
+        run->scene->owner.scene.margin = options->margin;
+    free(world);
     return good;
 }
 
 static int print_file(const struct scene_options *options, const char *path)
 {
-    struct robot robot;
-    struct robot_scene scene = {.robot_bodies = 0};
-    bool good = robot_read(path, &robot) && print_robot(options, &robot, &scene);
-    robot_scene_clear(&scene);
-    robot_clear(&robot);
+    struct run run = {.options = options,
+                      .worlds = allocate(options->world_count, sizeof *run.worlds)};
+    bool good = fmb_robot_read(path, &options->robot, &run.robot) == 0;
+    if (!good)
+        robot_world_print("", fmb_robot_why(run.robot));
+    if (good) {
+        good = joints_open(&run.robot->tree, options->joints, options->slack, &run.joints) &&
+               make_scene(&run) && (options->table ? print_table(&run) : print_pose(&run));
+        joints_clear(&run.joints);
+    }
+    for (size_t w = 0; w < options->world_count; w++)
+        robot_world_clear(&run.worlds[w]);
+    free(run.worlds);
+    fmb_robot_scene_free(run.scene);
+    fmb_robot_free(run.robot);
     good = output_flush() && good;
     return good ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
 int cmd_scene(int argc, char **argv)
 {
-    struct scene_options options = {.sides = ENCLOSURE_SIDES, .margin = -1, .slack = 0.001};
+    struct scene_options options = {
+        .robot = {.bus = 1}, .sides = ENCLOSURE_SIDES, .margin = -1, .slack = 0.001};
     const struct args_option own[] = {
         {"joints", ARGS_OTHER, &options.joints, .take = take_once},
         {"joints-csv", ARGS_OTHER, &options.table, .take = take_once},
         {"limit-slack", ARGS_NUMBER, &options.slack, .high = INFINITY},
+        {"base", ARGS_OTHER, &options, .take = take_base},
         {"sides", ARGS_INTEGER, &options.sides, .low = 4, .high = ENCLOSURE_SIDES_MAX},
-        {"excess", ARGS_NUMBER, &options.body.excess, .high = DBL_MAX},
-        {"objects", ARGS_FLAG, .out = &options.body.objects},
-        {"package-path", ARGS_OTHER, &options.body.package_path, .take = take_once},
-        {"with", ARGS_OTHER, &options.world, .take = take_once},
+        {"excess", ARGS_NUMBER, &options.robot.excess, .high = DBL_MAX},
+        {"objects", ARGS_FLAG, .out = &options.objects},
+        {"package-path", ARGS_OTHER, &options.robot.package_path, .take = take_once},
+        {"with", ARGS_OTHER, &options, .take = take_world},
+        {"srdf", ARGS_OTHER, &options.robot.srdf, .take = take_once},
         {"ignore", ARGS_OTHER, &options, .take = take_ignored},
         {"margin", ARGS_NUMBER, &options.margin, .high = DBL_MAX},
+        {"verbose", ARGS_FLAG, .out = &options.verbose},
         {.name = NULL},
     };
     struct args args = {"scene",          usage, own, .operand = "ROBOT.urdf", .operands_min = 1,
@@ -210,10 +496,11 @@ int cmd_scene(int argc, char **argv)
         args_error(&args, "--sides: expected a multiple of 4, found %ld", options.sides);
         code = ARGS_USAGE;
     }
-    options.body.sides = (int) options.sides;
-    options.body.bytes_max = FMB_CLIENT_BODY_BYTES_MAX;
+    options.robot.sides = (int) options.sides;
+    options.robot.objects = options.objects;
     if (code == ARGS_RUN)
         code = print_file(&options, args.operands[0]);
+    free(options.world);
     free(options.ignored);
     return code;
 }

@@ -3,6 +3,8 @@
 #include "commands.h"
 #include "escape.h"
 #include "fmb.h"
+#include "json.h"
+#include "progress.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -129,6 +131,8 @@ static int cmd_log(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    progress_allow();
+    json_exit_without_memory();
     if (argc < 2 || !is_one_of(argv[1], "--version", "-V"))
         return run_menu(&fmb, argc, argv);
     if (argc > 2)

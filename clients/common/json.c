@@ -39,6 +39,7 @@ struct body_id {
 
 struct json_reader {
     struct text text;
+    bool links_allowed;
     size_t scene_number;       /* of the object that is being read, from 1 */
     struct owned_scene *scene; /* what has been read of it */
     struct body_id *ids;       /* table of its bodies; the entries are those of entry */
@@ -305,6 +306,7 @@ static bool read_name(const struct place *at, void *out)
  * its body. */
 struct body {
     struct fmb_placement placement;
+    const char *link; /* that carries it, or NULL */
     /* The frame, unless there are several. */
     int shape; /* enum fmb_shape, or one of the text */
     double radius, length, sides;
@@ -410,7 +412,7 @@ static bool read_orientation(const struct place *at, void *out)
 static read_function read_frames;
 
 /* In the order of reading. A frame has those from SHAPE to ORIENTATION_XYZW. */
-enum { ID, NAME, GROUP, VELOCITY, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, RADIUS, LENGTH };
+enum { ID, NAME, GROUP, VELOCITY, LINK, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, RADIUS, LENGTH };
 enum { SIDES = LENGTH + 1, POSITION, ORIENTATION, ORIENTATION_XYZW, FRAMES, BODY_KEYS };
 
 static const struct key body_keys[BODY_KEYS] = {
@@ -418,6 +420,7 @@ static const struct key body_keys[BODY_KEYS] = {
     [NAME] = {"name", false, read_name, offsetof(struct body, placement.name)},
     [GROUP] = {"group", false, read_group, offsetof(struct body, placement.group)},
     [VELOCITY] = {"velocity", false, read_vector, offsetof(struct body, placement.velocity)},
+    [LINK] = {"link", false, read_name, offsetof(struct body, link)},
     [SHAPE] = {"shape", false, read_shape, offsetof(struct body, shape)},
     [ORIGIN] = {"origin", false, read_vector, offsetof(struct body, origin)},
     [COMPONENTS] = {"components", false, read_components, 0},
@@ -647,6 +650,7 @@ static bool add_id(const struct place *at, int64_t id, const char *name, size_t 
  * neither "position" nor "orientation". */
 static bool read_body(const struct place *at, void *out)
 {
+    struct owned_scene *scene = at->reader->scene;
     struct place member[BODY_KEYS];
     struct body body;
     struct fmb_placement *placement = &body.placement;
@@ -665,6 +669,13 @@ static bool read_body(const struct place *at, void *out)
             return false;
     }
     *(struct fmb_placement *) out = *placement;
+    if (!member[LINK].item)
+        return true;
+    if (!at->reader->links_allowed)
+        return refuse(&member[LINK], "only a scene that is added to a robot has links");
+    if (!scene->links)
+        scene->links = scene_alloc(scene, scene->scene.placement_count, sizeof *scene->links);
+    scene->links[at->index] = body.link ? body.link : "";
     return true;
 }
 
@@ -801,19 +812,27 @@ static bool read_scene(struct json_reader *reader, const cJSON *item)
 
 /* ---- The input ------------------------------------------------------------------------------- */
 
-/* Exits if memory is exhausted; the parser would report invalid JSON. */
 static void *allocate_bytes(size_t size)
 {
     return allocate(size, 1);
 }
 
-struct json_reader *json_open(int fd)
+void json_exit_without_memory(void)
 {
     cJSON_InitHooks(&(cJSON_Hooks){allocate_bytes, free});
+}
+
+struct json_reader *json_open(int fd)
+{
     struct json_reader *reader = allocate(1, sizeof *reader);
     text_open(fd, &reader->text);
     reader->scene_number = 1;
     return reader;
+}
+
+void json_allow_links(struct json_reader *reader)
+{
+    reader->links_allowed = true;
 }
 
 void json_close(struct json_reader *reader)

@@ -70,6 +70,13 @@ enum json_outcome {
  * FMB_CLIENT_BODY_BYTES_MAX is refused whether or not the bus is used. */
 enum json_outcome json_next(struct json_reader *reader, struct owned_scene *out);
 
+/* For programs: the process ends with status 1 if the parser runs out of memory, which otherwise
+ * looks like invalid JSON. Changes cJSON for the whole process. */
+void json_exit_without_memory(void);
+
+/* Allows bodies of the following scenes a "link", that of a robot, which carries them. */
+void json_allow_links(struct json_reader *reader);
+
 /* After JSON_BAD and JSON_FAILED: returns the reason, one line without a line feed, valid as long
  * as the reader:
  *

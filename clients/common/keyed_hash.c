@@ -1,6 +1,6 @@
 #include "keyed_hash.h"
 
-#include <stdbool.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
@@ -50,12 +50,17 @@ unsigned keyed_hash_of(const uint64_t secret[2], const void *key, size_t size)
     return (unsigned) (v[0] ^ v[1] ^ v[2] ^ v[3]);
 }
 
+static uint64_t secret[2];
+
+static void make_secret(void)
+{
+    if (getrandom(secret, sizeof secret, 0) != (ssize_t) sizeof secret)
+        abort(); /* not on a kernel that has the call */
+}
+
 unsigned keyed_hash_value(const void *key, size_t size)
 {
-    static uint64_t secret[2];
-    static bool made;
-    if (!made && getrandom(secret, sizeof secret, 0) != (ssize_t) sizeof secret)
-        abort(); /* not on a kernel that has the call */
-    made = true;
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, make_secret);
     return keyed_hash_of(secret, key, size);
 }

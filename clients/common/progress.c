@@ -12,6 +12,8 @@ static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 /* Calls of progress_to() for each reading of the clock. */
 enum { STEPS = 64 };
 
+static bool allowed; /* unless it is, nothing here is written: threads do not meet */
+
 static struct {
     const char *unit; /* NULL: there is no count, or no terminal */
     unsigned steps;
@@ -19,8 +21,15 @@ static struct {
     bool shown;      /* the line has text on it */
 } line;
 
+void progress_allow(void)
+{
+    allowed = true;
+}
+
 void progress_begin(const char *unit)
 {
+    if (!allowed)
+        return;
     line.unit = isatty(STDERR_FILENO) ? unit : NULL;
     line.next_at = clock_ns() + first_after_ns;
 }
@@ -41,11 +50,13 @@ void progress_clear(void)
 {
     if (line.shown)
         fputs("\r\033[K", stderr);
-    line.shown = false;
+    if (allowed)
+        line.shown = false;
 }
 
 void progress_end(void)
 {
     progress_clear();
-    line.unit = NULL;
+    if (allowed)
+        line.unit = NULL;
 }

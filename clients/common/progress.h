@@ -4,6 +4,9 @@
 
 #include <stdint.h>
 
+/* Programs call this first; in libraries nothing is ever shown. */
+void progress_allow(void);
+
 /* Begins a count of things such as "bytes", in place of any earlier one. Nothing is shown unless
  * standard error is a terminal. unit must live as long as the count. */
 void progress_begin(const char *unit);

@@ -14,6 +14,7 @@ struct owned_scene {
     struct fmb_scene scene; /* ids are unique */
     struct ignored ignored; /* its ignored pairs */
     int dim;                /* 2 or 3, of all bodies */
+    const char **links;     /* [placement_count], the link that carries a body; NULL: none does */
     double outside;         /* how far hulls extend beyond the cylinders that they enclose */
     void **memory;          /* owned, [memory_count]: what the scene points to */
     size_t memory_count, memory_capacity;

@@ -137,28 +137,19 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
 
 static void write_bodies(struct json_writer *json, const struct fmb_scene *scene)
 {
-    json_break(json, "\n ");
     json_begin(json, "bodies", '[');
-    for (size_t i = 0; i < scene->placement_count; i++) {
-        if (i > 0)
-            json_break(json, "\n            ");
+    for (size_t i = 0; i < scene->placement_count; i++)
         write_body(json, &scene->placements[i]);
-    }
     json_end(json, ']');
 }
 
 static void write_pairs(struct json_writer *json, const struct fmb_placement *placements,
                         const char *key, const unsigned (*pair)[2], size_t count)
 {
-    enum { PAIRS_PER_LINE = 8 };
-    json_break(json, "\n ");
     json_begin(json, key, '[');
-    for (size_t k = 0; k < count; k++) {
-        if (k > 0 && k % PAIRS_PER_LINE == 0)
-            json_break(json, "\n           ");
+    for (size_t k = 0; k < count; k++)
         json_integers(json, NULL,
                       (const int64_t[]){placements[pair[k][0]].id, placements[pair[k][1]].id}, 2);
-    }
     json_end(json, ']');
 }
 

@@ -7,8 +7,8 @@
 
 #include <stdio.h>
 
-/* Writes a scene with finite numbers so that it reads back as the same bits: one object, a line for
- * each body. Check ferror(out) for write errors. */
+/* Writes a scene with finite numbers so that it reads back as the same bits: one object on one
+ * line. Check ferror(out) for write errors. */
 void scene_json_write(FILE *out, struct owned_scene *scene);
 
 /* Writes the member "frames" of a body. */

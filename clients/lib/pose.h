@@ -5,9 +5,8 @@
 
 #include <stdbool.h>
 
-/* The length of q is 1 except for rounding. */
 struct pose {
-    double p[3], q[4]; /* q: w, x, y, z */
+    double p[3], q[4]; /* q: w, x, y, z; its length is from 2^-100 to 2^100 */
 };
 
 #define POSE_IDENTITY ((struct pose){{0, 0, 0}, {1, 0, 0, 0}})

@@ -725,7 +725,7 @@ refused() {
 @test "an unknown key or shape lists what there is" {
     query '{"dim": 3, "bodies": [{"id": 1, "radii": 1}]}'
     ended 2
-    said 'fmb: standard input: bodies[0]: unknown key "radii" (there are id, name, group, velocity, shape, origin, components, vertices, size, radius, length, sides, position, orientation, orientation_xyzw, frames)'
+    said 'fmb: standard input: bodies[0]: unknown key "radii" (there are id, name, group, velocity, link, shape, origin, components, vertices, size, radius, length, sides, position, orientation, orientation_xyzw, frames)'
     query '{"dim": 3, "bodies": [{"id": 1, "shape": "ball"}]}'
     said 'fmb: standard input: bodies[0].shape: unknown shape "ball" (there are cuboid, tetrahedron, face, box, hull, sphere, capsule, cylinder)'
     query '{"dim": 3, "bodys": []}'

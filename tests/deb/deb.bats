@@ -52,6 +52,8 @@ get() {
         gcc -std=c99 /fmb/clients/examples/scene.c $(pkg-config --cflags fmb-client) -Wl,-Bstatic -lfmb-client -lfmb \
             -Wl,-Bdynamic -llcm -lglib-2.0 -lgmp -lm -o static'
     [ "$(inside /shared)" = "$(inside /static)" ]
+    printf '#include <fmb_robot.h>\nint main(void) { struct fmb_robot *r; return fmb_robot_read("/fmb/clients/demo/robot/robot.urdf", 0, &r); }\n' > "$root/robot.c"
+    inside sh -c 'gcc robot.c $(pkg-config --cflags --libs fmb-robot) -o robot && ./robot'
     inside apt-get purge -q -y libfmb-dev
     inside /shared
     ! inside dpkg -s liblcm-dev || inside apt-get autoremove -q -y
@@ -64,7 +66,7 @@ get() {
 }
 
 @test "nothing remains when the packages are removed" {
-    inside apt-get purge -q -y fmb fmbd libfmb0 libfmb-client0 python3-fmb
+    inside apt-get purge -q -y fmb fmbd libfmb0 libfmb-client0 libfmb-robot0 python3-fmb
     [ -z "$(find "$root" -xdev -path "$root/fmb" -prune -o -path "$root/proc" -prune -o -name '*fmb*' -print)" ]
 }
 

@@ -28,9 +28,10 @@ setup() {
     [ "$(find "$root" -type f -perm /111 -printf '%f %m\n' | sort | xargs)" = 'fmb 755 fmbd 755' ]
     cp "$FMB_BUILD"/man/*.[18] msgs/*.lcm "$BATS_TEST_TMPDIR"
     (cd "$BATS_TEST_TMPDIR" && for name in *.*; do echo "$name"; done
-    for name in LICENSE fmb fmb fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb.h fmb.pc \
-        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmbd fmbd fmbd.service libfmb-client.a \
-        libfmb-client.so libfmb-client.so.0 libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
+    for name in LICENSE fmb fmb fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb-robot.pc fmb.h fmb.pc \
+        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmbd fmbd fmbd.service libfmb-client.a \
+        libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
+        libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
         sort | diff - <(find "$root" ! -type d -printf '%f\n' | sort)
 }
 
@@ -93,9 +94,124 @@ END
     done
 }
 
+# robot_program FILE: writes a program that prints a robot's joints, links and a point of its tool, in
+# a scene of its own and among others, from each of two threads; then what is wrong with a file.
+robot_program() {
+    cat > "$1" << 'END'
+#include <fmb_robot.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+static struct fmb_robot *robot;
+static void *pose(void *out)
+{
+    static const double size[3] = {1, 1, 1};
+    static const char *const links[2] = {NULL, "tool"};
+    static const char *const ignore[1][2] = {{"base", "tool"}};
+    struct fmb_body cube;
+    struct fmb_placement bodies[2];
+    struct fmb_scene world;
+    struct fmb_robot_world around;
+    struct fmb_robot_scene *scene;
+    double q[2] = {0, 0.5};
+    int step;
+    fmb_body_make(3, FMB_BOX, size, 3, &cube);
+    memset(bodies, 0, sizeof bodies);
+    memset(&world, 0, sizeof world);
+    bodies[0].body = bodies[1].body = &cube;
+    bodies[0].id = 7;
+    bodies[1].id = 1;
+    bodies[0].position[0] = bodies[1].position[2] = 8;
+    world.placements = bodies;
+    world.placement_count = 2;
+    around.scene = &world;
+    around.links = links;
+    if (fmb_robot_scene(robot, &around, 1, ignore, 1, &scene) != 0)
+        return NULL;
+    for (step = 0; step < 1000; step++) {
+        q[1] = step / 1000.0;
+        if (fmb_robot_place(scene, q) != 0)
+            return NULL;
+    }
+    memcpy(out, fmb_robot_scene_get(scene)->placements, 5 * sizeof(struct fmb_placement));
+    q[0] = 1e300;
+    if (fmb_robot_place(scene, q) == 0)
+        return NULL;
+    printf("%zu moved, %zu ignored, %s\n", fmb_robot_moved(scene),
+           fmb_robot_scene_get(scene)->ignored_count, fmb_robot_scene_why(scene));
+    fmb_robot_scene_free(scene);
+    return out;
+}
+int main(void)
+{
+    struct fmb_placement placed[2][5];
+    pthread_t thread[2];
+    void *done[2];
+    const char *const *joints;
+    const char *const *links;
+    double lower[2], upper[2], home[2];
+    int i;
+    if (fmb_robot_read("r.urdf", NULL, &robot) != 0 || *fmb_robot_why(robot))
+        return 1;
+    if (fmb_robot_joints(robot, &joints) != 2 || fmb_robot_links(robot, &links) != 3)
+        return 2;
+    fmb_robot_limits(robot, lower, upper);
+    fmb_robot_home(robot, home);
+    printf("%s %g %g %g, %s %g %g %g, %s %s %s, %d %d %d, %g\n", joints[0], lower[0], upper[0], home[0],
+           joints[1], lower[1], upper[1], home[1], links[0], links[1], links[2],
+           fmb_robot_ignores(robot, 0, 1), fmb_robot_ignores(robot, 2, 1), fmb_robot_ignores(robot, 0, 2),
+           fmb_robot_excess(robot));
+    for (i = 0; i < 2; i++)
+        pthread_create(&thread[i], NULL, pose, placed[i]);
+    for (i = 0; i < 2; i++)
+        pthread_join(thread[i], &done[i]);
+    if (!done[0] || !done[1])
+        return 3;
+    for (i = 0; i < 2; i++)
+        printf("%s %g %g, carried %g %g, %s %g\n", placed[i][2].name, placed[i][2].position[1], placed[i][2].position[2],
+               placed[i][3].position[1], placed[i][3].position[2], placed[i][4].id == 7 ? "cube" : "?",
+               placed[i][4].position[0]);
+    fmb_robot_free(robot);
+    i = fmb_robot_read("none.urdf", NULL, &robot);
+    printf("%d %s\n", i, fmb_robot_why(robot));
+    fmb_robot_free(robot);
+    return 0;
+}
+END
+}
+
+@test "a program poses a robot in two threads, with the shared and the static library" {
+    cd "$BATS_TEST_TMPDIR"
+    robot_program robot.c
+    box='<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    cat > r.urdf << END
+<robot name="r"><link name="base">$box</link><link name="arm">$box</link><link name="tool">$box</link>
+<joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+<joint name="slide" type="prismatic"><origin xyz="0 0 2"/><parent link="arm"/><child link="tool"/><axis xyz="0 1 0"/>
+<limit lower="0.5" upper="1"/></joint></robot>
+END
+    for kind in '' --static; do
+        $compiler -std=c99 -Wall -Wextra -Wshadow -Wconversion -Werror -pthread robot.c \
+            $(pkg-config $kind --cflags --libs fmb-robot) -o robot
+        run ./robot
+        [ "$status" = 0 ]
+        why="its value is beyond 1048576 radians"
+        [ "$output" = "turn -inf inf 0, slide 0.5 1 0.75, base arm tool, 1 1 0, 0
+4 moved, 4 ignored, joint 'turn': $why
+4 moved, 4 ignored, joint 'turn': $why
+tool 0.999 2, carried 0.999 10, cube 8
+tool 0.999 2, carried 0.999 10, cube 8
+-1 none.urdf: No such file or directory" ]
+    done
+    echo '#include <fmb_robot.h>
+        int main() { return fmb_robot_joints(0, 0) != 0; }' > robot.cc
+    g++ -std=c++11 -Wall -Wextra -Werror -c robot.cc $(pkg-config --cflags fmb-robot)
+}
+
 @test "a project of CMake finds the libraries, shared and static, in a version that will do" {
     cd "$BATS_TEST_TMPDIR"
     uses_both both.c
+    printf '#include <fmb_robot.h>\nint main(void) { struct fmb_robot *r; return fmb_robot_read("none", 0, &r) != -1; }\n' > robot.c
     cat > CMakeLists.txt << 'END'
 cmake_minimum_required(VERSION 3.13)
 project(both C)
@@ -104,6 +220,8 @@ find_package(fmb)
 foreach(kind "" "-static")
     add_executable(both${kind} both.c)
     target_link_libraries(both${kind} fmb::fmb-client${kind} fmb::fmb${kind})
+    add_executable(robot${kind} robot.c)
+    target_link_libraries(robot${kind} fmb::fmb-robot${kind})
 endforeach()
 END
     configure="cmake -S . -B out -DCMAKE_PREFIX_PATH=$root -DCMAKE_C_COMPILER=$compiler"
@@ -112,6 +230,8 @@ END
     done
     cmake --build out
     out/both
+    out/robot
+    out/robot-static
     mv "$root/lib" "$root/elsewhere"
     run out/both-static
     mv "$root/elsewhere" "$root/lib"
@@ -129,23 +249,28 @@ END
     done
 }
 
-@test "the client library exports its own names only" {
-    nm -g --defined-only "$root/lib/libfmb-client.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
-    grep -qx fmb_client_query "$BATS_TEST_TMPDIR/names"
-    [ -z "$(grep -v '^fmb_client_\|^fmb_flat_' "$BATS_TEST_TMPDIR/names")" ]
+@test "the client and robot libraries export their own names only, and robots need no LCM" {
+    for name in client robot; do
+        nm -g --defined-only "$root/lib/libfmb-$name.a" | awk 'NF == 3 { print $3 }' > "$BATS_TEST_TMPDIR/names"
+        grep -qx 'fmb_client_query\|fmb_robot_read' "$BATS_TEST_TMPDIR/names"
+        [ -z "$(grep -v "^fmb_${name}_\|^fmb_flat_" "$BATS_TEST_TMPDIR/names")" ]
+    done
+    [ -z "$(grep -v '^fmb_robot_' "$BATS_TEST_TMPDIR/names")" ]
+    ! ldd "$root/lib/libfmb-robot.so" | grep -i lcm
 }
 
 @test "shared libraries have a soname, and export the names of their headers only" {
-    for name in fmb fmb-client; do
+    for name in fmb fmb-client fmb-robot; do
         file=$root/lib/lib$name.so
         [ "$(readlink "$file")" = lib$name.so.0 ]
         grep -q "SONAME *lib$name.so.0\$" <<< "$(objdump -p "$file")"
         case $name in
         fmb) headers="$root/include/fmb.h $root/include/fmb_batch.h" ;;
         fmb-client) headers="$root/include/fmb_client.h $root/include/fmb_flat.h" ;;
+        fmb-robot) headers=$root/include/fmb_robot.h ;;
         esac
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
-        grep -qx "${name/-/_}_status_text" "$BATS_TEST_TMPDIR/names"
+        grep -qx "${name/-/_}_\(status_text\|read\)" "$BATS_TEST_TMPDIR/names"
         for shown in $(cat "$BATS_TEST_TMPDIR/names"); do grep -q "[ *]$shown(" $headers; done
     done
 }

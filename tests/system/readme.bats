@@ -4,7 +4,7 @@
 load service
 
 # The pages with commands that are run: blocks of "console".
-pages='README.md service/README.md clients/README.md'
+pages='README.md service/README.md clients/README.md clients/robot/README.md'
 
 # script PAGE: its commands, one after the other in one shell, each followed by a line that ends what
 # it prints.
@@ -85,7 +85,11 @@ prints_what_it_shows() {
 }
 
 @test "the commands of the page of the clients print what it shows" {
-    prints_what_it_shows clients/README.md 8
+    prints_what_it_shows clients/README.md 5
+}
+
+@test "the commands of the page of robots print what it shows" {
+    prints_what_it_shows clients/robot/README.md 3
 }
 
 @test "no other page has commands that these tests do not run" {

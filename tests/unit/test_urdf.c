@@ -525,7 +525,7 @@ static void poses_of_links_agree_with_matrices(void **state)
         struct robot robot;
         struct pose pose[JOINTS + 1];
         read_text(text, &robot);
-        robot_place(&robot, value, pose);
+        robot_place(&robot, &POSE_IDENTITY, value, pose);
         const struct pose *last = &pose[n % 2 ? 0 : JOINTS];
         for (int k = 0; k < 3; k++) {
             double column[3] = {0, 0, 0};

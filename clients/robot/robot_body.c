@@ -1,11 +1,9 @@
 #include "robot_body.h"
 
 #include "allocate.h"
-#include "complain.h"
 #include "enclosure.h"
 #include "mesh_hull.h"
 #include "mesh.h"
-#include "number.h"
 #include "output.h"
 #include "turned_box.h"
 
@@ -18,7 +16,7 @@
 
 /* The frames of the body under construction. */
 struct frames {
-    const struct robot *robot;
+    struct robot *robot;
     const struct robot_link *link;
     const struct robot_body_options *options;
     struct owned_scene *scene;
@@ -29,19 +27,19 @@ struct frames {
     size_t count, capacity, mesh_capacity;
 };
 
-/* Reports an error of an element. Returns false. */
+/* Adds an error of an element. Returns false. */
 __attribute__((format(printf, 3, 4))) static bool refuse(const struct frames *frames,
                                                          const struct robot_element *element,
                                                          const char *format, ...)
 {
-    char place[COMPLAIN_PLACE_MAX];
+    enum { TEXT_MAX = 8192 };
+    char text[TEXT_MAX];
     va_list list;
-    snprintf(place, sizeof place, "%s: line %lu: link '%s'", frames->robot->path, element->line,
-             frames->link->name->name);
     va_start(list, format);
-    complain_at(place, format, list);
+    vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    return false;
+    return robot_refuse(frames->robot, frames->robot->path, element->line, "link",
+                        frames->link->name->name, "%s", text);
 }
 
 static void add_frame(struct frames *frames, const struct given_frame *given)
@@ -115,6 +113,50 @@ static char *find_in_packages(const char *folders, const char *name)
     return NULL;
 }
 
+/* Whether a package.xml in a folder has this <name>. */
+static bool is_named_so(const char *folder, const char *name, size_t length)
+{
+    enum { BYTES_MAX = 1 << 16 };
+    char *path = output_beside(folder, "package.xml"), *text = allocate(BYTES_MAX + 1, 1);
+    FILE *file = fopen(path, "r");
+    const char *at = text, *comment;
+    if (file && fread(text, 1, BYTES_MAX, file) > 0) {
+        while ((comment = strstr(at, "<!--")) && comment < strstr(at, "<name>"))
+            at = strstr(comment, "-->") ? strstr(comment, "-->") : text + BYTES_MAX;
+        at = strstr(at, "<name>") ? strstr(at, "<name>") + strlen("<name>") : text + BYTES_MAX;
+        at += strspn(at, " \t\r\n");
+    }
+    const bool found =
+        strncmp(at, name, length) == 0 && at[length] && strchr(" \t\r\n<", at[length]);
+    if (file)
+        fclose(file);
+    free(path);
+    free(text);
+    return found;
+}
+
+/* Returns the path of a file in a package, "NAME/REST": in the nearest folder above the robot that
+ * is called NAME, or whose package.xml has this name. NULL: there is none. The caller frees it. */
+static char *find_above(const char *robot, const char *file)
+{
+    const size_t name = strcspn(file, "/");
+    char *beside = output_beside(robot, "."), *folder = realpath(beside, NULL), *path = NULL;
+    free(beside);
+    while (folder && !path && *folder) {
+        char *slash = strrchr(folder, '/');
+        const bool called = strlen(slash + 1) == name && strncmp(slash + 1, file, name) == 0;
+        const size_t end = strlen(folder);
+        char *within = allocate(end + 2, 1);
+        sprintf(within, "%s/", folder);
+        if (called || is_named_so(within, file, name))
+            path = output_beside(within, file + name + 1);
+        free(within);
+        *slash = '\0';
+    }
+    free(folder);
+    return path;
+}
+
 /* Returns the path of a mesh, which the caller frees; or NULL after an error. */
 static char *find_mesh(const struct frames *frames, const struct robot_element *element)
 {
@@ -134,10 +176,13 @@ static char *find_mesh(const struct frames *frames, const struct robot_element *
         return output_beside(frames->robot->path, file);
     char *path = find_in_packages(folders, file);
     if (!path)
-        refuse(frames, element, "%s: %s%s", element->file,
-               folders ? "not found in --package-path "
-                       : "give the folders that packages are in by --package-path",
-               folders ? folders : "");
+        path = find_above(frames->robot->path, file);
+    if (!path)
+        refuse(frames, element,
+               "%s: not found%s%s: no folder above the robot is called %.*s, or has a package.xml "
+               "with this name: give the folders that packages are in by --package-path",
+               element->file, folders ? " in --package-path " : "", folders ? folders : "",
+               (int) name, file);
     return path;
 }
 
@@ -221,21 +266,6 @@ static bool add_mesh(struct frames *frames, const struct robot_element *element)
     return good;
 }
 
-void robot_meshes_report(const struct robot_meshes *meshes, const char *file)
-{
-    char text[NUMBER_TEXT_MAX];
-    if (meshes->scaled > 0)
-        complain(
-            "%s: the <unit> of %zu of its COLLADA meshes is applied, as in RViz and Gazebo, "
-            "but not in MoveIt: %s m in %s",
-            file, meshes->scaled, number_short(meshes->first_unit, text), meshes->first_file);
-    if (meshes->rounded > 0) /* rounded up */
-        complain(
-            "%s: %zu of the hulls of its meshes have fewer vertices and a radius; they contain "
-            "the meshes, and extend beyond them by at most %s",
-            file, meshes->rounded, number_short(meshes->excess * (1 + 1e-5), text));
-}
-
 /* ---- Bodies ---- */
 
 static bool add_element(struct frames *frames, const struct robot_element *element)
@@ -313,7 +343,7 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
     return NULL;
 }
 
-const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
+const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *link,
                                   const struct robot_body_options *options,
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin)
@@ -336,4 +366,43 @@ const struct fmb_body *robot_body(const struct robot *robot, const struct robot_
     free(frames.frame);
     free(frames.is_mesh);
     return body;
+}
+
+/* ---- Bounds ---- */
+
+static void extend(const struct fmb_placement *placement, const double vertex[3], double radius,
+                   double low[3], double high[3])
+{
+    struct pose pose = POSE_IDENTITY;
+    double at[3] = {vertex[0], vertex[1], vertex[2]};
+    memcpy(pose.p, placement->position, sizeof pose.p);
+    if (placement->orientation_count == 4)
+        memcpy(pose.q, placement->orientation, sizeof pose.q);
+    pose_apply(&pose, at);
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = fmin(low[axis], at[axis] - radius);
+        high[axis] = fmax(high[axis], at[axis] + radius);
+    }
+}
+
+void robot_bounds(const struct fmb_placement *placement, double low[3], double high[3])
+{
+    for (unsigned i = 0; i < placement->body->frame_count; i++) {
+        const struct fmb_frame *frame = fmb_body_frame(placement->body, i);
+        double number[3 * FMB_HULL_VERTICES_MAX], corner[3];
+        bool by_vertices;
+        const size_t count = fmb_frame_numbers(frame, &by_vertices, number);
+        for (size_t v = 0; by_vertices && v < count; v += 3)
+            extend(placement, number + v, frame->radius, low, high);
+        for (int k = 0; !by_vertices && k < 8; k++) {
+            for (int axis = 0; axis < 3; axis++) {
+                corner[axis] = number[axis];
+                if (frame->shape == FMB_BOX)
+                    corner[axis] += (k >> axis & 1 ? 0.5 : -0.5) * number[3 + axis];
+                for (int c = 0; c < 3 && frame->shape != FMB_BOX; c++)
+                    corner[axis] += k >> c & 1 ? number[3 + 3 * c + axis] : 0;
+            }
+            extend(placement, corner, frame->radius, low, high);
+        }
+    }
 }

@@ -24,9 +24,6 @@ struct robot_meshes {
     double excess;  /* ... and the largest radius */
 };
 
-/* Reports it, in at most one line for each kind of change. file: of the robot. */
-void robot_meshes_report(const struct robot_meshes *meshes, const char *file);
-
 /* Makes the body of a link that has at least one collision element. If it has only one, the origin
  * of the body is that of the element, and its numbers are those of the file. If it has several, the
  * origin is that of the link, and the numbers of elements with an origin are rounded.
@@ -34,10 +31,13 @@ void robot_meshes_report(const struct robot_meshes *meshes, const char *file);
  * In/out: scene    of dim 3; owns the body; its `outside` is raised
  *         meshes   of the robot so far
  * Out:    *origin  of the body, in the link
- * Returns NULL after an error, which was reported on stderr. */
-const struct fmb_body *robot_body(const struct robot *robot, const struct robot_link *link,
+ * Returns NULL after errors, which the robot has. */
+const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *link,
                                   const struct robot_body_options *options,
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin);
+
+/* Extends a box by the vertices of a placed body of boxes, cuboids and hulls, with their radii. */
+void robot_bounds(const struct fmb_placement *placement, double low[3], double high[3]);
 
 #endif

@@ -16,9 +16,16 @@ struct joint_report {
     unsigned long line; /* 0: none */
 };
 
+/* The largest of some lengths: of which joint, and in which line. */
+struct joint_most {
+    double by;
+    size_t joint;
+    unsigned long line;
+};
+
 struct joints {
     const struct robot *robot;
-    double *value; /* [joint_count]; 0 unless given or that of a mimic joint */
+    double *value; /* [joint_count]; robot_home() unless given or that of a mimic joint */
     /* Whether a value exceeds its limits by more than the slack, or is too large for an angle. If
      * so, robot_place() must not be called. */
     bool refused;
@@ -29,6 +36,7 @@ struct joints {
     size_t outside_count;         /* number of values */
     struct joint_report full;     /* largest value that may be in degrees, of full_joint */
     size_t full_joint;
+    struct joint_most mimic; /* difference between a given mimic joint and what it would follow */
 };
 
 /* In: text: "name=value,name=value"; NULL: none. slack: at least 0. Returns false after an error.
@@ -36,22 +44,23 @@ struct joints {
 bool joints_open(const struct robot *robot, const char *text, double slack, struct joints *out);
 void joints_clear(struct joints *joints);
 
-/* Records the joints that are neither given nor mimic joints and whose limits exclude 0. */
-void joints_check(struct joints *joints);
-
 /* Sets the mimic joints that are not given, from the values of the joints that they follow. path
  * and line: place of those values, for messages. joint_table_next() calls it for each row. */
 void joints_follow(struct joints *joints, const char *path, unsigned long line);
 
-/* Reports the values outside the limits. If all are within the slack, prints one line. Otherwise
- * prints the farthest value of each joint that exceeds the slack, and returns false. Also reports
- * whether values seem to be in degrees: more than a full turn of a joint without limits, or outside
- * the limits. */
-bool joints_report(const struct joints *joints);
+/* Returns whether all values are within the slack. If not, reports the farthest value of each joint
+ * that exceeds it, and whether values seem to be in degrees: more than a full turn of a joint
+ * without limits, or outside the limits. */
+bool joints_check(const struct joints *joints);
+
+/* Writes what there is to say about values that joints_check() passes, in parts that begin with ";
+ * ": joints that are not at 0 though no value is given, values outside the limits, values that seem
+ * to be in degrees, and mimic joints that do not follow. */
+void joints_describe(const struct joints *joints, FILE *out);
 
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
  * any order: one for each joint that moves and has no value in joints; optional are those of mimic
- * joints, "time", in seconds, and "label". Memory holds one line. */
+ * joints, "time", in seconds, and "label". Others are ignored. Memory holds one line. */
 struct joint_table {
     /* Of the current row. */
     bool has_time;
@@ -66,6 +75,11 @@ struct joint_table {
     char *text, **field; /* owned: of the line; field: [columns] */
     unsigned *column;    /* owned: [columns], the joint */
     size_t columns;
+    size_t fixed, unknown;                 /* columns that are ignored */
+    char unknown_name[QUERY_NAME_MAX + 1]; /* of the first one */
+    double *before;                        /* owned: [joint_count], values of the previous row */
+    size_t rows;                           /* since the beginning */
+    struct joint_most step;                /* of a joint from row to row */
 };
 
 /* Opens a regular file, and reads its first line. joints: receives the values of rows. Returns
@@ -76,6 +90,9 @@ void joint_table_close(struct joint_table *table);
 /* Reads the next row. */
 enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
 enum joint_row joint_table_next(struct joint_table *table);
+
+/* Writes "N rows, largest step ...", and which columns were ignored. */
+void joint_table_describe(const struct joint_table *table, FILE *out);
 
 /* Goes back to the first row. */
 bool joint_table_rewind(struct joint_table *table);

@@ -14,6 +14,20 @@
 #include <string.h>
 #include <sys/stat.h>
 
+/* Whether a joint that moves is neither given nor a mimic joint. */
+static bool needs_value(const struct joints *joints, size_t j)
+{
+    const struct robot_joint *joint = &joints->robot->joints[j];
+    return joint->type != ROBOT_FIXED && !joint->mimic_name && !joints->given[j];
+}
+
+/* Whether the value of a joint, or of the one that it follows, is given. */
+static bool is_chosen(const struct joints *joints, size_t j)
+{
+    const struct robot_joint *joint = &joints->robot->joints[j];
+    return joints->given[j] || (joint->mimic_name && joints->given[joint->mimic]);
+}
+
 /* Records the value of joint j if it is outside the limits. */
 static void check_value(struct joints *joints, size_t j, const char *path, unsigned long line)
 {
@@ -22,14 +36,14 @@ static void check_value(struct joints *joints, size_t j, const char *path, unsig
     const bool turns = joint->type != ROBOT_PRISMATIC;
     struct joint_report found = {.value = joints->value[j], .path = path, .line = line};
     found.by = fmax(joint->limit[0] - found.value, found.value - joint->limit[1]);
-    if (isnan(found.value) || (turns && fabs(found.value) > TURN_RADIANS_MAX))
+    if (robot_refuse_value(joint, found.value))
         found.by = INFINITY;
     else if (turns && fabs(found.value) > fmax(full_turn, fabs(joints->full.value)) &&
              (found.by > joints->slack || joint->type == ROBOT_CONTINUOUS)) {
         joints->full = found;
         joints->full_joint = j;
     }
-    if (!(found.by > 0))
+    if (!(found.by > 0) || (!isinf(found.by) && !is_chosen(joints, j)))
         return;
     joints->outside_count++;
     joints->refused = joints->refused || found.by > joints->slack || isinf(found.by);
@@ -51,34 +65,69 @@ static void report_value(const struct joints *joints, size_t j, const struct joi
         snprintf(limits, sizeof limits, "is outside its limits, %s to %s%s",
                  number_or_inf(joint->limit[0], low), number_or_inf(joint->limit[1], high),
                  joint->type != ROBOT_PRISMATIC ? " radians" : "");
-    complain("%s%s%s: joint '%s'%s%s%s: %s %s%s", at->path, line,
-             given || follows ? "" : ": by default (--joints sets other values)", joint->name->name,
+    complain("%s%s%s: joint '%s'%s%s%s: %s %s%s", at->path, line, "", joint->name->name,
              follows ? " (a mimic of '" : "", follows ? joint->mimic_name : "", follows ? "')" : "",
              number_or_inf(at->value, value), limits, what);
 }
 
-bool joints_report(const struct joints *joints)
+static void report_full(const struct joints *joints, FILE *out)
+{
+    char value[NUMBER_TEXT_MAX];
+    if (joints->full.value != 0)
+        fprintf(out,
+                "; joint '%s': %s is more than a full turn: is it in degrees? Values are in "
+                "radians",
+                joints->robot->joints[joints->full_joint].name->name,
+                number_or_inf(joints->full.value, value));
+}
+
+bool joints_check(const struct joints *joints)
 {
     const struct joint_report *outside = joints->outside;
-    char slack[NUMBER_TEXT_MAX], what[128];
-    size_t farthest = 0;
+    char what[128];
+    if (!joints->refused)
+        return true;
     for (size_t j = 0; j < joints->robot->joint_count; j++) {
         const bool beyond = joints->robot->joints[j].type != ROBOT_PRISMATIC &&
                             fabs(outside[j].value) > TURN_RADIANS_MAX;
         snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
         if (outside[j].by > joints->slack || isinf(outside[j].by))
             report_value(joints, j, &outside[j], !beyond, beyond ? what : "");
-        farthest = outside[j].by > outside[farthest].by ? j : farthest;
     }
-    snprintf(what, sizeof what,
-             ": within --limit-slack %s (values outside their limits: %zu; this is the farthest)",
-             number_or_inf(joints->slack, slack), joints->outside_count);
-    if (!joints->refused && joints->outside_count > 0)
-        report_value(joints, farthest, &outside[farthest], true, what);
     if (joints->full.value != 0)
         report_value(joints, joints->full_joint, &joints->full, false,
                      "is more than a full turn: is it in degrees? Values are in radians");
-    return !joints->refused;
+    return false;
+}
+
+void joints_describe(const struct joints *joints, FILE *out)
+{
+    const struct robot *robot = joints->robot;
+    char value[NUMBER_TEXT_MAX], slack[NUMBER_TEXT_MAX];
+    size_t farthest = 0, middle = 0;
+    for (size_t j = 0; j < robot->joint_count; j++) {
+        const struct robot_joint *joint = &robot->joints[j];
+        farthest = joints->outside[j].by > joints->outside[farthest].by ? j : farthest;
+        if (needs_value(joints, j) && robot_home(joint) != 0)
+            fprintf(out, "%s%s",
+                    middle++ == 0 ? "; in the middle of their limits, as 0 is outside: " : ", ",
+                    joint->name->name);
+    }
+    if (joints->outside_count > 0)
+        fprintf(out,
+                "; values outside limits, within --limit-slack %s: %zu, the farthest %s of '%s'",
+                number_or_inf(joints->slack, slack), joints->outside_count,
+                number_or_inf(joints->outside[farthest].value, value),
+                robot->joints[farthest].name->name);
+    if (joints->outside_count > 0 && joints->outside[farthest].line > 0)
+        fprintf(out, " in line %lu", joints->outside[farthest].line);
+    if (joints->mimic.by > 0)
+        fprintf(out, "; mimic '%s' differs from what it follows by up to %s",
+                robot->joints[joints->mimic.joint].name->name,
+                number_short(joints->mimic.by, value));
+    if (joints->mimic.by > 0 && joints->mimic.line > 0)
+        fprintf(out, " (line %lu)", joints->mimic.line);
+    report_full(joints, out);
 }
 
 static bool set_value(struct joints *joints, unsigned j, const char *text, const char *path,
@@ -135,6 +184,9 @@ bool joints_open(const struct robot *robot, const char *text, double slack, stru
         good = j != UINT32_MAX && set_value(out, j, value, place, 0, place) && good;
     }
     free(copy);
+    for (size_t j = 0; j < robot->joint_count; j++)
+        if (!out->given[j])
+            out->value[j] = robot_home(&robot->joints[j]);
     return good;
 }
 
@@ -145,28 +197,21 @@ void joints_clear(struct joints *joints)
     free(joints->outside);
 }
 
-/* Whether a joint that moves is neither given nor a mimic joint. */
-static bool needs_value(const struct joints *joints, size_t j)
-{
-    const struct robot_joint *joint = &joints->robot->joints[j];
-    return joint->type != ROBOT_FIXED && !joint->mimic_name && !joints->given[j];
-}
-
-void joints_check(struct joints *joints)
-{
-    for (size_t j = 0; j < joints->robot->joint_count; j++)
-        if (needs_value(joints, j))
-            check_value(joints, j, joints->robot->path, joints->robot->joints[j].name->line);
-}
-
 void joints_follow(struct joints *joints, const char *path, unsigned long line)
 {
-    for (size_t j = 0; j < joints->robot->joint_count; j++) {
-        const struct robot_joint *joint = &joints->robot->joints[j];
-        if (!joint->mimic_name || joints->given[j])
+    const struct robot *robot = joints->robot;
+    for (size_t j = 0; j < robot->joint_count; j++) {
+        const struct robot_joint *joint = &robot->joints[j];
+        if (!joint->mimic_name)
             continue;
-        joints->value[j] = joint->multiplier * joints->value[joint->mimic] + joint->offset;
-        check_value(joints, j, path, line);
+        const double follows = joint->multiplier * joints->value[joint->mimic] + joint->offset;
+        const double by = fabs(joints->value[j] - follows);
+        if (!joints->given[j]) {
+            joints->value[j] = follows;
+            check_value(joints, j, path, line);
+        } else if (by > joints->mimic.by) {
+            joints->mimic = (struct joint_most){by, j, line};
+        }
     }
 }
 
@@ -175,6 +220,7 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line)
 enum { TEXT_MAX = 1 << 20 };
 
 /* Columns that are not of joints. */
+#define COLUMN_IGNORED (UINT32_MAX - 3)
 #define COLUMN_TIME (UINT32_MAX - 2)
 #define COLUMN_LABEL (UINT32_MAX - 1)
 
@@ -256,15 +302,22 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
 
 /* ---- The table ---- */
 
-/* Returns the joint of column i, COLUMN_TIME or COLUMN_LABEL; UINT32_MAX after an error. */
+/* Returns the joint of column i, or one of the above; UINT32_MAX after an error. */
 static unsigned take_column(struct joint_table *table, size_t i)
 {
     const char *name = table->field[i];
     const unsigned column = strcmp(name, "time") == 0    ? COLUMN_TIME
                             : strcmp(name, "label") == 0 ? COLUMN_LABEL
                                                          : UINT32_MAX;
-    if (column == UINT32_MAX)
+    const struct robot_joint *joint = robot_find_joint(table->joints->robot, name);
+    if (column == UINT32_MAX && joint && joint->type != ROBOT_FIXED)
         return take_joint(table->joints, name, table->place);
+    if (column == UINT32_MAX) {
+        table->fixed += joint != NULL;
+        if (!joint && table->unknown++ == 0)
+            snprintf(table->unknown_name, sizeof table->unknown_name, "%s", name);
+        return COLUMN_IGNORED;
+    }
     for (size_t k = 0; k < i; k++)
         if (table->column[k] == column) {
             refuse(table, "column '%s' appears twice", name);
@@ -302,6 +355,7 @@ bool joint_table_open(const char *path, struct joints *joints, struct joint_tabl
                                 .file = fopen(path, "r"),
                                 .time = NAN,
                                 .text = allocate_unset(TEXT_MAX),
+                                .before = allocate(joints->robot->joint_count, sizeof(double)),
                                 .place = allocate(COMPLAIN_PLACE_MAX, 1)};
     const bool is_stdin = strcmp(path, "-") == 0;
     if (!is_stdin && (!out->file || fstat(fileno(out->file), &about) != 0))
@@ -319,6 +373,7 @@ bool joint_table_rewind(struct joint_table *table)
     size_t found;
     rewind(table->file);
     table->line = 0;
+    table->rows = 0;
     table->time = NAN;
     return read_line(table, &found) == JOINT_ROW;
 }
@@ -331,6 +386,7 @@ void joint_table_close(struct joint_table *table)
     free(table->place);
     free(table->field);
     free(table->column);
+    free(table->before);
 }
 
 static enum joint_row take_time(struct joint_table *table, const char *text)
@@ -365,6 +421,35 @@ static enum joint_row set_label(struct joint_table *table, const char *text)
                         (int) QUERY_NAME_MAX);
 }
 
+/* Counts the row, and records the largest step of a joint. */
+static void measure_step(struct joint_table *table)
+{
+    const double *value = table->joints->value;
+    const size_t count = table->joints->robot->joint_count;
+    for (size_t j = 0; j < count && table->rows > 0; j++) {
+        const double by = fabs(value[j] - table->before[j]);
+        if (by > table->step.by)
+            table->step = (struct joint_most){by, j, table->line};
+    }
+    if (count > 0)
+        memcpy(table->before, value, count * sizeof *value);
+    table->rows++;
+}
+
+void joint_table_describe(const struct joint_table *table, FILE *out)
+{
+    char by[NUMBER_TEXT_MAX];
+    fprintf(out, "rows: %zu", table->rows);
+    if (table->step.by > 0)
+        fprintf(out, ", largest step %s of '%s' to line %lu", number_short(table->step.by, by),
+                table->joints->robot->joints[table->step.joint].name->name, table->step.line);
+    if (table->fixed > 0)
+        fprintf(out, "; ignored: columns of fixed joints: %zu", table->fixed);
+    if (table->unknown > 0)
+        fprintf(out, "; ignored: columns of no joint: %zu ('%s')", table->unknown,
+                table->unknown_name);
+}
+
 enum joint_row joint_table_next(struct joint_table *table)
 {
     const char *label = NULL;
@@ -378,11 +463,13 @@ enum joint_row joint_table_next(struct joint_table *table)
             label = table->field[i];
         else if (column == COLUMN_TIME)
             outcome = take_time(table, table->field[i]);
-        else if (!set_value(table->joints, column, table->field[i], table->path, table->line,
-                            table->place))
+        else if (column != COLUMN_IGNORED && !set_value(table->joints, column, table->field[i],
+                                                        table->path, table->line, table->place))
             outcome = JOINT_ROW_BAD;
     }
-    if (outcome == JOINT_ROW)
+    if (outcome == JOINT_ROW) {
         joints_follow(table->joints, table->path, table->line);
+        measure_step(table);
+    }
     return outcome == JOINT_ROW ? set_label(table, label) : outcome;
 }

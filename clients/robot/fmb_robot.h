@@ -1,0 +1,129 @@
+/* libfmb-robot: robots of URDF files as scenes of fmb.h: a body for each link, its poses by forward
+ * kinematics, and the pairs that are not tested.
+ *
+ *     struct fmb_robot *robot;
+ *     struct fmb_robot_scene *scene;
+ *     if (fmb_robot_read("robot.urdf", NULL, &robot) != 0)
+ *         fail(fmb_robot_why(robot));
+ *     if (fmb_robot_scene(robot, &world, 1, NULL, 0, &scene) != 0)
+ *         fail(fmb_robot_scene_why(scene));
+ *     fmb_robot_place(scene, q);
+ *     fmb_scene_begin(fmb_robot_scene_get(scene), ...);
+ *     fmb_scene_free(...);
+ *
+ * Link with pkg-config's fmb-robot: libfmb, Expat and cJSON; no LCM. clients/robot/README.md says
+ * which parts of URDF and SRDF are read, and what becomes of them.
+ *
+ * Angles are in radians, lengths in the units of the file. Texts are UTF-8. A pointer that a
+ * function returns belongs to the robot or the scene, and is valid as long as that is.
+ *
+ * Threads: a robot is only read after fmb_robot_read(), so threads may share it. A scene may be
+ * used by one thread at a time.
+ *
+ * The library prints nothing. What is wrong with the input is returned as text. The process ends
+ * with status 1 if memory is exhausted. */
+#ifndef FMB_ROBOT_H
+#define FMB_ROBOT_H
+
+#include "fmb.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- A robot ---- */
+
+struct fmb_robot;
+
+/* A field that is 0 or NULL has its default. */
+struct fmb_robot_options {
+    const char *srdf;         /* file: its pairs are ignored, in place of neighbours */
+    const char *package_path; /* folders of packages, separated by colons: see the README */
+    double base[6];           /* where the root is: x, y, z, and roll, pitch, yaw, as in URDF */
+    int sides;                /* of the hulls of cylinders, a multiple of 4 up to 512; 0: 16 */
+    double excess; /* how far hulls may extend beyond meshes, so that they have fewer vertices */
+    int objects;   /* not 0: a hull for each object of an OBJ file */
+    int bus;       /* not 0: bodies fit into a query on the bus */
+};
+
+/* Reads a robot, with its meshes.
+ * In:  path     of a URDF file; "-" is standard input
+ *      options  NULL: all defaults
+ * Out: *out     set in any case, for fmb_robot_why(); to be freed after its scenes
+ * Returns 0; or -1 after errors. */
+int fmb_robot_read(const char *path, const struct fmb_robot_options *options,
+                   struct fmb_robot **out);
+void fmb_robot_free(struct fmb_robot *robot); /* may be NULL */
+
+/* Returns all that is wrong with the files, as lines separated by line feeds, each with its place:
+ * "robot.urdf: line 7: joint 'elbow': ...". "" if nothing is. */
+const char *fmb_robot_why(const struct fmb_robot *robot);
+
+/* The functions below take a robot that was read without errors. */
+
+/* Returns the number n of joints that move and follow no other: the length of q, the values of
+ * these joints, in the order of the file. names: receives [n] their names; may be NULL. */
+size_t fmb_robot_joints(const struct fmb_robot *robot, const char *const **names);
+
+/* Out: lower, upper: [n], of q; infinite: none. */
+void fmb_robot_limits(const struct fmb_robot *robot, double *lower, double *upper);
+
+/* Out: q: [n], 0, or the middle of the limits of a joint if 0 is outside. */
+void fmb_robot_home(const struct fmb_robot *robot, double *q);
+
+/* Returns the number of links that have a body, in the order of the file. names: receives [number]
+ * their names; may be NULL. */
+size_t fmb_robot_links(const struct fmb_robot *robot, const char *const **names);
+
+/* Whether the pair of links a and b, indices of fmb_robot_links(), is ignored: as neighbours or
+ * parts of one rigid body, or by the SRDF file. Cost: O(log(number of such pairs)). */
+int fmb_robot_ignores(const struct fmb_robot *robot, size_t a, size_t b);
+
+/* Returns how far bodies extend beyond the cylinders and meshes of the file at most. */
+double fmb_robot_excess(const struct fmb_robot *robot);
+
+/* ---- A robot among bodies ---- */
+
+struct fmb_robot_scene;
+
+/* Bodies around a robot. */
+struct fmb_robot_world {
+    /* All pairs, in 3D; with its ignored pairs. Bodies, names and this struct must outlive the
+     * scene of the robot. */
+    const struct fmb_scene *scene;
+    /* [placement_count]: the link that carries a body, whose pose is then relative to that link,
+     * and which is not tested against it; NULL: none. links itself may be NULL. */
+    const char *const *links;
+};
+
+/* Makes a scene: first the bodies of links, as placements 0 to number - 1 with ids from 1 on and
+ * the names of the links; then carried bodies; then the others, each in the order of the worlds.
+ * Bodies whose ids are taken get others. Parts of one rigid body are of one group. duration and
+ * margin are the largest of the worlds. The robot is at home. In:  worlds  [world_count] ignore
+ * [ignore_count][2], names of links or bodies: pairs that are not tested Out: *out    set in any
+ * case, for fmb_robot_scene_why(); to be freed Returns 0; or -1 after errors. */
+int fmb_robot_scene(const struct fmb_robot *robot, const struct fmb_robot_world *worlds,
+                    size_t world_count, const char *const (*ignore)[2], size_t ignore_count,
+                    struct fmb_robot_scene **out);
+void fmb_robot_scene_free(struct fmb_robot_scene *scene); /* may be NULL */
+
+/* Returns what was wrong in the last call that failed, as lines separated by line feeds. */
+const char *fmb_robot_scene_why(struct fmb_robot_scene *scene);
+
+/* Returns the scene, whose placements fmb_robot_place() changes. */
+const struct fmb_scene *fmb_robot_scene_get(const struct fmb_robot_scene *scene);
+
+/* Returns the number of placements that fmb_robot_place() changes, the first ones: for
+ * fmb_scene_again(). */
+size_t fmb_robot_moved(const struct fmb_robot_scene *scene);
+
+/* Poses the links and the bodies that they carry. Limits are not checked.
+ * In:  q  [n], finite; of joints that turn up to 2^20 in magnitude
+ * Returns 0; or -1 after an error, and the poses are undefined.
+ * Cost: O(links + joints). */
+int fmb_robot_place(struct fmb_robot_scene *scene, const double *q);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,97 @@
+/* A robot with its bodies, and scenes of it and of the bodies around it, which can be posed any
+ * number of times: what fmb_robot.h declares, as structs. */
+#ifndef ROBOT_SCENE_H
+#define ROBOT_SCENE_H
+
+#include "fmb_robot.h"
+#include "robot_body.h"
+
+/* Why a pair is ignored; of several reasons the first one counts. */
+enum robot_origin {
+    ROBOT_NEIGHBOURS, /* a link with a body, and the nearest one above it that has a body */
+    ROBOT_SRDF,
+    ROBOT_SRDF_DEFAULT,
+    ROBOT_CARRIED, /* a body, and the link that carries it */
+    ROBOT_WORLD,
+    ROBOT_OPTION, /* of the caller */
+    ROBOT_ORIGINS,
+};
+
+struct robot_pair {
+    unsigned a, b; /* bodies, a < b */
+    enum robot_origin origin;
+};
+
+struct robot_pairs {
+    struct robot_pair *pair; /* owned; after robot_pairs_sort() in the order of (a, b), each once */
+    size_t count, capacity;
+};
+
+/* In: a, b: different, in either order. */
+void robot_pairs_add(struct robot_pairs *pairs, unsigned a, unsigned b, enum robot_origin origin);
+void robot_pairs_sort(struct robot_pairs *pairs);
+bool robot_pairs_has(const struct robot_pairs *pairs, unsigned a, unsigned b); /* once sorted */
+
+#define ROBOT_NO_BODY UINT32_MAX
+
+struct fmb_robot {
+    struct robot tree;
+    struct robot_body_options options;
+    struct robot_meshes meshes;
+    struct pose base; /* of the root */
+    bool bad;         /* there were errors */
+    /* Bodies of links. */
+    size_t body_count;
+    struct fmb_placement *bodies; /* [body_count]: body, id, name and group */
+    unsigned *link;               /* [body_count] */
+    unsigned *body_of_link;       /* [link_count]; or ROBOT_NO_BODY */
+    struct pose *origin;          /* [body_count], in the link */
+    const char **link_names;      /* [body_count] */
+    unsigned *rigid; /* [body_count]: the first body of its rigid body, by fixed joints alone */
+    /* Ignored pairs, sorted; besides those of one rigid body, unless there is SRDF. */
+    struct robot_pairs ignored;
+    const char *srdf;           /* its path; NULL: none */
+    size_t unlisted;            /* neighbours and parts of a rigid body that the SRDF has not */
+    bool *untested;             /* [body_count]: collisions are disabled by default; NULL: none */
+    struct robot_pairs enabled; /* pairs that are tested though */
+    struct robot_lines unknown; /* links of the SRDF that the robot has not, a line each */
+    size_t unknown_count;
+    /* q. */
+    size_t joint_count;
+    unsigned *moving;         /* [joint_count], joints that move and follow no other */
+    const char **joint_names; /* [joint_count] */
+    struct owned_scene owner; /* of the bodies and of arrays */
+};
+
+/* Reads the SRDF file of the options into a robot whose bodies are made. Returns false after
+ * errors, which the robot has. */
+bool robot_read_srdf(struct fmb_robot *robot);
+
+struct robot_carried {
+    const char *name; /* of the link */
+    unsigned link;
+    struct pose pose; /* in the link */
+};
+
+struct fmb_robot_scene {
+    const struct fmb_robot *robot;
+    struct owned_scene owner;         /* the scene; owns arrays, not bodies */
+    struct fmb_placement *placements; /* of the scene: bodies of links, carried ones, others */
+    struct fmb_placement *begin;      /* [placement_count], as they were given */
+    size_t carried_count;
+    struct robot_carried *carried; /* [carried_count] */
+    double time;                   /* of the last robot_scene_place() */
+    double *value;                 /* [joints of the tree], of the last fmb_robot_place() */
+    struct pose *pose;             /* [links] */
+    struct robot_pairs ignored;    /* sorted, without pairs of one group */
+    struct robot_lines errors, notes;
+};
+
+/* Sets the poses for values of all joints of the tree, as of robot_place(), and moves the bodies of
+ * the world to where they are at this time, in seconds, if it is not 0. place: where the values are
+ * given, for messages. Returns false after an error, which the scene has: a pose exceeds the range
+ * of doubles. */
+bool robot_scene_place(struct fmb_robot_scene *scene, const double *value, double time,
+                       const char *place);
+
+#endif

@@ -1,0 +1,36 @@
+/* Bodies around a robot, from a file: a scene of JSON, or a robot of URDF, whose links are
+ * obstacles of one group. */
+#ifndef ROBOT_WORLD_H
+#define ROBOT_WORLD_H
+
+#include "fmb_robot.h"
+#include "scene.h"
+
+/* Reads the only scene of a JSON file, whose bodies may have a "link". Returns false after an
+ * error: one line of text. */
+enum { ROBOT_WORLD_ERROR_MAX = 4800 };
+bool robot_world_read_json(const char *path, struct owned_scene *out,
+                           char error[ROBOT_WORLD_ERROR_MAX]);
+
+struct robot_world {
+    const char *path;
+    struct owned_scene json;       /* of JSON */
+    struct fmb_robot *robot;       /* of URDF; NULL: JSON */
+    struct fmb_robot_scene *scene; /* of the robot, at home */
+    struct fmb_robot_world world;  /* for fmb_robot_scene() */
+};
+
+/* Reads a file. options: of a robot. Returns false after errors, which were printed on stderr. The
+ * caller passes the world to robot_world_clear() in either case. */
+bool robot_world_read(const char *path, const struct fmb_robot_options *options,
+                      struct robot_world *out);
+void robot_world_clear(struct robot_world *world);
+
+/* Prints lines that are separated by line feeds on stderr, each after "PATH: "; "": after nothing.
+ */
+void robot_world_print(const char *path, const char *text);
+
+/* Sets the group of the links of all robots among the worlds, which no other body has. */
+void robot_world_set_groups(struct robot_world *worlds, size_t count);
+
+#endif
