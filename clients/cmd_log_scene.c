@@ -101,8 +101,8 @@ static void report_command(const struct log_query *query)
             query->number, query->offset, query->key.client_id, query->key.sequence_number);
     if (method != 0)
         fprintf(stderr, " --method %s", fmb_method_by_number(method)->name);
-    fprintf(stderr, "%s%s%s\n", want & FMB_WANT_BOX ? " --box" : "",
-            want & FMB_WANT_GAP ? " --gap" : "",
+    fprintf(stderr, "%s%s%s%s\n", want & FMB_WANT_BOX ? " --box" : "",
+            want & FMB_WANT_POINT ? " --point" : "", want & FMB_WANT_GAP ? " --gap" : "",
             is_pair && want & FMB_WANT_CERTIFICATE ? " --certificate" : "");
 }
 

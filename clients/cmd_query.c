@@ -39,10 +39,12 @@ static const char usage[] =
     "  --fail-if WHAT   exit with 3, after all scenes, if a pair is overlapping;\n"
     "                   touching: or only touches; near: or is within the margin\n"
     "  --box            give the box of the intersection too\n"
+    "  --point          give a point of each contact too, and a time at which both\n"
+    "                   bodies hold it\n"
     "  --gap            give the signed distance too: how far apart the bodies are,\n"
     "                   or minus how deep they overlap, as two bounds; with --json\n"
     "                   also the direction that proves the lower one, and the nearest\n"
-    "                   points\n"
+    "                   or deepest points\n"
     "  --certificate    give a proof of each verdict too. It is checked here with the\n"
     "                   numbers of the scene alone; a verdict without a valid proof\n"
     "                   counts as not decided. A pair with a body of several frames\n"
@@ -188,7 +190,7 @@ static bool answer_scene(struct query *query, struct owned_scene *owner)
     bool more = true;
     scene->method = query->method;
     scene->want = FMB_WANT_TIMES | (query->rows.box ? FMB_WANT_BOX : 0) |
-                  (query->rows.gap ? FMB_WANT_GAP : 0) |
+                  (query->rows.point ? FMB_WANT_POINT : 0) | (query->rows.gap ? FMB_WANT_GAP : 0) |
                   (query->certificate ? FMB_WANT_CERTIFICATE : 0);
     query->scene = scene;
     const uint64_t pairs = scene_count_pairs(owner);
@@ -287,6 +289,7 @@ int cmd_query(int argc, char **argv)
         {"all", ARGS_FLAG, .out = &query.rows.all},
         {"fail-if", ARGS_OTHER, &query.fail_if, .take = take_fail_if},
         {"box", ARGS_FLAG, .out = &query.rows.box},
+        {"point", ARGS_FLAG, .out = &query.rows.point},
         {"gap", ARGS_FLAG, .out = &query.rows.gap},
         {"certificate", ARGS_FLAG, .out = &query.certificate},
         {"method", ARGS_OTHER, &query.method, .take = take_method},

@@ -56,7 +56,7 @@ static void begin_table(struct report_rows *rows)
             number_short(scene->duration, duration));
     if (count > 0)
         report_headings(rows->printer.out, &rows->printer.columns, rows->gap || scene->margin > 0,
-                        rows->box);
+                        rows->point, rows->box);
 }
 
 static void end_table(const struct report_rows *rows)

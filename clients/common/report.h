@@ -23,7 +23,7 @@ struct report_row {
     const char *label; /* of the scene */
     int64_t id[2];     /* 0: anonymous; REPORT_NONE: not known */
     const char *name[2];
-    int dim;                            /* of box and gap */
+    int dim;                            /* of box, point and gap */
     bool names_frames;                  /* of the gap: a body has several frames */
     const struct fmb_client_answer *of; /* a and b are not used */
 };
@@ -45,9 +45,14 @@ void report_row_csv(FILE *out, const struct report_row *row);
 /* The widths of the columns of a table. A row with longer names, or with numbers of more digits
  * than usual, widens them for the rows below it. */
 struct report_columns {
-    int body, contact, gap;
+    int body, contact, gap, point;
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
 };
+
+/* Writes a point of a contact for people, such as "(0.75, 0.5, 0) at 0.25 s". Returns text. In:
+ * point: the time, then dim coordinates. */
+enum { REPORT_POINT_MAX = (1 + FMB_DIM_MAX) * NUMBER_TEXT_MAX + 16 };
+const char *report_point(int dim, const double *point, char text[REPORT_POINT_MAX]);
 
 /* Returns the name, or else the id, which is written into text. */
 const char *report_body(const char *name, int64_t id, char text[NUMBER_TEXT_MAX]);
@@ -58,8 +63,9 @@ int report_body_width(const char *name, int64_t id);
 /* Returns the widths for ids of up to four digits and numbers of up to six. */
 struct report_columns report_columns(void);
 
-/* Prints the line of column names. gap, box: whether rows have them. */
-void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool box);
+/* Prints the line of column names. gap, point, box: whether rows have them. */
+void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool point,
+                     bool box);
 
 /* A destination of rows. */
 struct report_printer {
@@ -74,17 +80,18 @@ struct report_printer {
  * In JSON it is an element of an array:
  *
  *     {"a": 1, "b": 2, "names": ["table", null], "verdict": "overlapping", "contact": [0, 1],
- *      "box": {"min": [0.5,0,0], "max": [1,1,1]}, "gap": [-0.25, -0.25], "frames": [0, 3],
- *      "direction": [0,0,1]}
+ *      "box": {"min": [0.5,0,0], "max": [1,1,1]},
+ *      "point": {"time": 0.5, "position": [0.75,0.5,0.5]}, "gap": [-0.25, -0.25],
+ *      "frames": [0, 3], "direction": [0,0,1]}
  *
  *     {"a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
  *      "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}}
  *
- * names are there if a body has one. frames are the indices, from 0, of the frames of a and b that
- * have the gap, where a or b has several. Doubles read back bit for bit. null is an infinite end of
- * a box, outward; or an infinite bound of a gap, positive where separated, else negative. A
- * "certificate" comes last; a pair that could not be decided has an "error" in place of the
- * verdict.
+ * names are there if a body has one, and a witness if the gap has one (fmb.h). frames are the
+ * indices, from 0, of the frames of a and b that have the gap, where a or b has several. Doubles
+ * read back bit for bit. null is an infinite end of a box, outward; an infinite bound of a gap,
+ * positive where separated, else negative; or an infinite coordinate of a point. A "certificate"
+ * comes last; a pair that could not be decided has an "error" in place of the verdict.
  *
  * In a table it is a line for people; a certificate, which is shortened if it is long, has a line
  * of its own. indent: the columns of the line that are printed already.
@@ -104,7 +111,7 @@ enum { REPORT_SEPARATED_MAX = 20 };
 struct report_rows {
     /* Set by the caller. */
     struct report_printer printer; /* out and form */
-    bool box, gap;                 /* wanted: columns of tables */
+    bool box, gap, point;          /* wanted: columns of tables */
     bool contacts, all;            /* rows: no separated pairs but near ones; in tables all */
     /* Private. */
     struct owned_scene *scene;

@@ -59,6 +59,12 @@ void report_answer_json(struct json_writer *json, int dim, bool names_frames,
         json_numbers(json, "max", answer->box[1], dim);
         json_end(json, '}');
     }
+    if (answer->has_point) {
+        json_begin(json, "point", '{');
+        json_number(json, "time", answer->point[0]);
+        json_numbers(json, "position", answer->point + 1, dim);
+        json_end(json, '}');
+    }
     if (answer->has_gap)
         write_gap(json, dim, &answer->gap, names_frames);
     if (of->certificate)
@@ -89,7 +95,7 @@ void report_csv_begin(FILE *out)
 {
     fputs(
         "utime,scene,label,a,b,name_a,name_b,verdict,contact_first,contact_last,gap_low,gap_high,"
-        "min_x,min_y,min_z,max_x,max_y,max_z,error\n",
+        "min_x,min_y,min_z,max_x,max_y,max_z,error,point_time,point_x,point_y,point_z\n",
         out);
 }
 
@@ -120,14 +126,14 @@ static void csv_text(FILE *out, const char *text)
     putc_unlocked('"', out);
 }
 
-/* numbers: NULL: the row has none. count: of numbers, and of columns. */
+/* With a comma before each. number: NULL: the row has none. */
 static void csv_numbers(FILE *out, const double *number, int count, int columns)
 {
     char text[NUMBER_TEXT_MAX];
     for (int i = 0; i < columns; i++) {
+        putc_unlocked(',', out);
         if (number && i < count)
             fputs(number_or_inf(number[i], text), out);
-        putc_unlocked(',', out);
     }
 }
 
@@ -146,18 +152,19 @@ void report_row_csv(FILE *out, const struct report_row *row)
     }
     if (row->of->status == FMB_OK)
         fputs(fmb_verdict_name((int) answer->verdict), out);
-    putc_unlocked(',', out);
     csv_numbers(out, answer->has_contact ? answer->contact : NULL, 2, 2);
     csv_numbers(out, answer->has_gap ? answer->gap.bounds : NULL, 2, 2);
     for (int end = 0; end < 2; end++)
         csv_numbers(out, answer->has_box ? answer->box[end] : NULL, row->dim, FMB_DIM_MAX);
+    putc_unlocked(',', out);
     csv_text(out, row->of->status == FMB_OK ? "" : row->of->text);
+    csv_numbers(out, answer->has_point ? answer->point : NULL, 1 + row->dim, 1 + FMB_DIM_MAX);
     putc_unlocked('\n', out);
 }
 
 /* ---- Tables ---- */
 
-enum { BODY_WIDTH = 4, VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12 };
+enum { BODY_WIDTH = 4, VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12, POINT_WIDTH = 24 };
 
 /* Width of one end of a box. */
 enum { END_WIDTH = 8 };
@@ -171,18 +178,21 @@ enum { TEXT_MAX = 2 * NUMBER_TEXT_MAX + 8 };
 struct report_columns report_columns(void)
 {
     struct report_columns columns = {
-        .body = BODY_WIDTH, .contact = CONTACT_WIDTH, .gap = GAP_WIDTH};
+        .body = BODY_WIDTH, .contact = CONTACT_WIDTH, .gap = GAP_WIDTH, .point = POINT_WIDTH};
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         columns.box[axis][0] = columns.box[axis][1] = END_WIDTH;
     return columns;
 }
 
-void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool box)
+void report_headings(FILE *out, const struct report_columns *columns, bool gap, bool point,
+                     bool box)
 {
     fprintf(out, "  %*s  %*s  %-*s  %-*s", columns->body, "a", columns->body, "b", VERDICT_WIDTH,
-            "verdict", gap || box ? columns->contact : 0, "contact");
+            "verdict", gap || point || box ? columns->contact : 0, "contact");
     if (gap)
-        fprintf(out, "  %-*s", box ? columns->gap : 0, "gap");
+        fprintf(out, "  %-*s", point || box ? columns->gap : 0, "gap");
+    if (point)
+        fprintf(out, "  %-*s", box ? columns->point : 0, "point");
     fputs(box ? "  box\n" : "\n", out);
 }
 
@@ -216,6 +226,16 @@ static int gap_text(const struct fmb_gap *gap, char text[TEXT_MAX])
     return same ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
 }
 
+const char *report_point(int dim, const double *point, char text[REPORT_POINT_MAX])
+{
+    char number[1 + FMB_DIM_MAX][NUMBER_TEXT_MAX];
+    for (int i = 0; i <= dim; i++)
+        number_short(point[i], number[i]);
+    snprintf(text, REPORT_POINT_MAX, "(%s, %s%s%s) at %s s", number[1], number[2],
+             dim > 2 ? ", " : "", dim > 2 ? number[3] : "", number[0]);
+    return text;
+}
+
 /* The ends are aligned in columns, so that boxes in successive rows can be compared. There are no
  * blanks at the end of the line. */
 static void text_box(FILE *out, int dim, const struct fmb_answer *answer,
@@ -233,7 +253,8 @@ static void text_box(FILE *out, int dim, const struct fmb_answer *answer,
 static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns)
 {
-    char text[TEXT_MAX] = "";
+    char text[TEXT_MAX] = "", point[REPORT_POINT_MAX];
+    const bool beyond = answer->has_point || answer->has_box;
     const char *verdict = fmb_verdict_name((int) answer->verdict);
     if (!answer->has_contact && !answer->has_gap) {
         fputs(verdict, out);
@@ -241,10 +262,15 @@ static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
     }
     int digits = answer->has_contact ? contact_text(answer, text) : 0;
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
-            answer->has_gap || answer->has_box ? widen(&columns->contact, digits, text) : 0, text);
+            answer->has_gap || beyond ? widen(&columns->contact, digits, text) : 0, text);
     if (answer->has_gap) {
         digits = gap_text(&answer->gap, text);
-        fprintf(out, "  %-*s", answer->has_box ? widen(&columns->gap, digits, text) : 0, text);
+        fprintf(out, "  %-*s", beyond ? widen(&columns->gap, digits, text) : 0, text);
+    }
+    if (answer->has_point) {
+        report_point(dim, answer->point, point);
+        const int width = widen(&columns->point, NUMBER_SHORT_DIGITS + 1, point); /* any longer */
+        fprintf(out, "  %-*s", answer->has_box ? width : 0, point);
     }
     if (answer->has_box)
         text_box(out, dim, answer, columns);

@@ -9,9 +9,13 @@
 #include <string.h>
 
 const char *const difference_name[DIFFERENT_KINDS] = {
-    [DIFFERENT_STATUS] = "status",     [DIFFERENT_VERDICT] = "verdict",
-    [DIFFERENT_INTERVAL] = "interval", [DIFFERENT_BOX] = "box",
-    [DIFFERENT_GAP] = "gap",           [DIFFERENT_CERTIFICATE] = "certificate",
+    [DIFFERENT_STATUS] = "status",
+    [DIFFERENT_VERDICT] = "verdict",
+    [DIFFERENT_INTERVAL] = "interval",
+    [DIFFERENT_BOX] = "box",
+    [DIFFERENT_POINT] = "point",
+    [DIFFERENT_GAP] = "gap",
+    [DIFFERENT_CERTIFICATE] = "certificate",
     [DIFFERENT_SCENE] = "scene",
 };
 
@@ -88,6 +92,9 @@ static unsigned parts_apart(const struct limits *limits, int dim, const struct f
     if (a->has_box && b->has_box && within(a->box[0], b->box[0], dim, limits->length) &&
         within(a->box[1], b->box[1], dim, limits->length))
         parts &= ~(unsigned) FMB_WANT_BOX;
+    if (a->has_point && b->has_point && within(a->point, b->point, 1, limits->time) &&
+        within(a->point + 1, b->point + 1, dim, limits->length))
+        parts &= ~(unsigned) FMB_WANT_POINT;
     if (a->has_gap && b->has_gap && within(a->gap.bounds, b->gap.bounds, 2, limits->length))
         parts &= ~(unsigned) FMB_WANT_GAP;
     return parts;
@@ -110,6 +117,7 @@ static bool find_difference(const struct limits *limits, struct difference *out)
         [DIFFERENT_VERDICT] = then->answer.verdict != now->answer.verdict,
         [DIFFERENT_INTERVAL] = parts & FMB_WANT_TIMES,
         [DIFFERENT_BOX] = parts & FMB_WANT_BOX,
+        [DIFFERENT_POINT] = parts & FMB_WANT_POINT,
         [DIFFERENT_GAP] = parts & FMB_WANT_GAP,
         [DIFFERENT_CERTIFICATE] = !same_certificates(limits, then->certificate, now->certificate)};
     int kind = 0;
@@ -129,13 +137,14 @@ static enum replay_outcome transient_outcome(int32_t then, int32_t now)
 
 /* ---- Exchanges ---- */
 
-/* Returns an answer as it is compared: a box or gap of another dimension than the query's is
+/* Returns an answer as it is compared: a box, point or gap of another dimension than the query's is
  * ignored, and a scene's pairs without a verdict have no status of their own. */
 static struct fmb_client_answer compared(const struct exchange *exchange,
                                          const struct fmb_client_answer *answer, int dim)
 {
     struct fmb_client_answer out = *answer;
     out.answer.has_box = answer->answer.has_box && exchange->head->dim == dim;
+    out.answer.has_point = answer->answer.has_point && exchange->head->dim == dim;
     out.answer.has_gap = answer->answer.has_gap && exchange->head->dim == dim;
     if (!exchange->is_pair)
         out.status = FMB_OK;

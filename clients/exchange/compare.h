@@ -1,10 +1,11 @@
 /* Compares a recorded exchange (then) with a new one (now).
  *
- * They are the same if their statuses are, and the verdicts, intervals, boxes, gaps and
- * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,
- * times and handles are not compared. The result of a scene may answer fewer pairs than requested
- * (end_pair): pairs that only one of the two answers are not compared. If the recorded result is to
- * a query of another scene (scene_change.h), that is the only difference. No shared state. */
+ * They are the same if their statuses are, and the verdicts, intervals, boxes, points,
+ * gaps and certificates of all pairs that both answer: bit for bit, or within a tolerance. The
+ * service, times and handles are not compared. The result of a scene may answer fewer pairs than
+ * requested (end_pair): pairs that only one of the two answers are not compared. If the recorded
+ * result is to a query of another scene (scene_change.h), that is the only difference. No shared
+ * state. */
 #ifndef COMPARE_H
 #define COMPARE_H
 
@@ -30,6 +31,7 @@ enum difference_kind {
     DIFFERENT_VERDICT,
     DIFFERENT_INTERVAL,
     DIFFERENT_BOX,
+    DIFFERENT_POINT,
     DIFFERENT_GAP,
     DIFFERENT_CERTIFICATE,
     DIFFERENT_SCENE, /* the two sides have other bodies or pairs, which are not compared */
@@ -58,10 +60,11 @@ struct difference {
 };
 
 struct compare_options {
-    /* 0: bit for bit. Otherwise the ends of intervals may differ by tolerance * duration, and the
-     * ends of boxes and gaps by tolerance * (largest coordinate of the query): of the position of a
-     * body, at the beginning or the end, plus its reach, which is 0 if its geometry is not in the
-     * query. Directions, witness points and certificates are then not compared. */
+    /* 0: bit for bit. Otherwise times of intervals and points may differ by tolerance * duration,
+     * and ends of boxes and gaps, and points, by tolerance * (largest coordinate of the query): of
+     * the position of a body, at the beginning or the end, plus its reach, which is 0 if its
+     * geometry is not in the query. Directions, witness points and certificates are then not
+     * compared. */
     double tolerance;
 };
 

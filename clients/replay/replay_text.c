@@ -27,11 +27,14 @@ static void put_box(FILE *out, int dim, const struct fmb_answer *answer)
                 number_short(answer->box[1][axis], text[1]));
 }
 
-static void put_gap(FILE *out, const struct fmb_gap *gap)
+/* If both sides have a gap, only one of them has witness points. */
+static void put_gap(FILE *out, const struct fmb_gap *gap, bool both)
 {
     char text[2][NUMBER_TEXT_MAX];
     fprintf(out, "%s..%s", number_short(gap->bounds[0], text[0]),
             number_short(gap->bounds[1], text[1]));
+    if (both)
+        fputs(gap->has_witness ? " with witness points" : " without", out);
 }
 
 static void put_side(FILE *out, enum escape form, const struct difference *difference,
@@ -39,14 +42,17 @@ static void put_side(FILE *out, enum escape form, const struct difference *diffe
 {
     const struct fmb_answer *answer = &side->answer;
     const char *verdict = fmb_verdict_name((int) answer->verdict);
-    char text[2][NUMBER_TEXT_MAX];
+    char text[2][NUMBER_TEXT_MAX], point[REPORT_POINT_MAX];
     if (difference->kind == DIFFERENT_INTERVAL && answer->has_contact)
         fprintf(out, "%s to %s s", number_short(answer->contact[0], text[0]),
                 number_short(answer->contact[1], text[1]));
     else if (difference->kind == DIFFERENT_BOX && answer->has_box)
         put_box(out, difference->dim, answer);
+    else if (difference->kind == DIFFERENT_POINT && answer->has_point)
+        fputs(report_point(difference->dim, answer->point, point), out);
     else if (difference->kind == DIFFERENT_GAP && answer->has_gap)
-        put_gap(out, &answer->gap);
+        put_gap(out, &answer->gap,
+                difference->then.answer.has_gap && difference->now.answer.has_gap);
     else if (difference->kind == DIFFERENT_CERTIFICATE && side->certificate)
         put_text(out, form, side->certificate);
     else if (difference->kind == DIFFERENT_VERDICT)
@@ -103,12 +109,14 @@ static struct change change_of(const struct difference *difference)
     const struct numbers contact = {{"begin", "end"}, then->contact, now->contact, 2, false};
     const struct numbers box[] = {{{"min"}, then->box[0], now->box[0], dim, true},
                                   {{"max"}, then->box[1], now->box[1], dim, true}};
+    const struct numbers point[] = {{{"time"}, then->point, now->point, 1, false},
+                                    {{"position"}, then->point + 1, now->point + 1, dim, true}};
     const struct numbers gap[] = {
         {{"lower bound", "upper bound"}, a->bounds, b->bounds, 2, false},
         {{"direction"}, a->direction, b->direction, dim, true},
         {{"time"}, &a->time, &b->time, 1, false},
-        {{"nearest point of the first body"}, a->witness[0], b->witness[0], dim, true},
-        {{"nearest point of the second body"}, a->witness[1], b->witness[1], dim, true},
+        {{"witness point of the first body"}, a->witness[0], b->witness[0], dim, true},
+        {{"witness point of the second body"}, a->witness[1], b->witness[1], dim, true},
         {{"frame of the first body", "frame of the second body"}, frame[0], frame[1], 2, false}};
     struct change change = {.axis = -1}, other = {.axis = -1};
     if (difference->kind == DIFFERENT_INTERVAL && then->has_contact && now->has_contact)
@@ -116,10 +124,13 @@ static struct change change_of(const struct difference *difference)
     for (int i = 0; i < 2 && difference->kind == DIFFERENT_BOX; i++)
         if (then->has_box && now->has_box)
             find_change(&box[i], dim, &change);
+    for (int i = 0; i < 2 && difference->kind == DIFFERENT_POINT; i++)
+        if (then->has_point && now->has_point)
+            find_change(&point[i], dim, &change);
     if (difference->kind != DIFFERENT_GAP || !then->has_gap || !now->has_gap)
         return change;
     find_change(&gap[0], dim, &change);
-    for (size_t i = 1; i < sizeof gap / sizeof *gap; i++)
+    for (size_t i = 1; i < sizeof gap / sizeof *gap && a->has_witness == b->has_witness; i++)
         find_change(&gap[i], dim, &other);
     if (change.differing == 0)
         return other;

@@ -23,18 +23,9 @@ static void take_numbers(const unsigned char *bytes, double *out, int count)
 
 bool wire_is_point(const double *point, int count)
 {
-    bool good = point[0] >= 0;
-    for (int i = 0; i < count; i++)
-        good = good && isfinite(point[i]);
-    return good;
-}
-
-/* Whether the time is finite and 0 or more, and the points are not NaN. */
-static bool is_witness(const double *witness, int count)
-{
-    bool good = witness[0] >= 0 && isfinite(witness[0]);
+    bool good = point[0] >= 0 && isfinite(point[0]);
     for (int i = 1; i < count; i++)
-        good = good && !isnan(witness[i]);
+        good = good && !isnan(point[i]);
     return good;
 }
 
@@ -66,7 +57,7 @@ static bool set_gap(unsigned char verdict, const double *direction, const double
     if (!separated && are_none(witness, points))
         return verdict >= FMB_TOUCHING;
     set_witness(witness, dim, out);
-    return (separated || verdict == FMB_OVERLAPPING) && is_witness(witness, points);
+    return (separated || verdict == FMB_OVERLAPPING) && wire_is_point(witness, points);
 }
 
 /* Sets the frames. Returns whether they are not negative, and 0 if there is no gap. */

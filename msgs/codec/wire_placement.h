@@ -52,7 +52,8 @@ static inline void wire_write_text(struct writer *writer, const char *text)
     writer_string(writer, text ? text : "");
 }
 
-/* Whether a time, 0 or more, and count - 1 coordinates are finite. */
+/* Whether the time is finite and 0 or more, and no coordinate is NaN: one beyond the largest double
+ * is infinite. In: point: a time and count - 1 coordinates. */
 bool wire_is_point(const double *point, int count);
 
 /* Reads the lists of gaps: bounds, directions, witnesses, frames. There is a gap for each of count

@@ -25,7 +25,8 @@ rows() {
     jq -r '. as $line | (.pairs // [.])[] |
         [$line.utime, $line.scene, $line.label, .a, .b, .names[0]?, .names[1]?, .verdict,
          (.contact // [null, null])[], (.gap // [null, null])[],
-         (.box // {min: [], max: []} | .min[0,1,2], .max[0,1,2]), .error]
+         (.box // {min: [], max: []} | .min[0,1,2], .max[0,1,2]), .error,
+         (.point // {position: []} | .time, .position[0,1,2])]
         | map(if type == "string" then "\"" + . + "\"" else . // "" | tostring end) | join(",")' "$1"
 }
 
@@ -57,12 +58,13 @@ rows() {
 }
 
 @test "CSV has the numbers of JSON" {
-    for kind in arm stack hard-3d-moving clients; do
+    generate --blast pairs 200 --box --point "$T/points.log"
+    for kind in tests/logs/{arm,stack,hard-3d-moving,clients} "$T/points"; do
         for all in '' --all; do
             # shellcheck disable=SC2086
-            "$FMB" log results --json $all tests/logs/$kind.log > "$T/json"
+            "$FMB" log results --json $all $kind.log > "$T/json"
             # shellcheck disable=SC2086
-            "$FMB" log results --csv $all tests/logs/$kind.log | tail -n +2 > "$T/csv"
+            "$FMB" log results --csv $all $kind.log | tail -n +2 > "$T/csv"
             rows "$T/json" > "$T/rows"
             [ "$(wc -l < "$T/csv")" = "$(wc -l < "$T/rows")" ]
             jq -Rn '[inputs | split(",") | map(. as $text | tonumber? // $text)]' "$T/csv" > "$T/a"
@@ -100,7 +102,7 @@ rows() {
     "$FMB" log results --csv --all "$log" | cut -d , -f 3- > "$T/found"
     run diff "$T/expected" "$T/found"
     [ "${#lines[@]}" = 2 ]
-    [[ ${lines[1]} == '> ,'*',,,,,,,,,,,,,"'?*'"' ]]
+    [[ ${lines[1]} == '> ,'*',,,,,,,,,,,,,"'?*'",,,,' ]]
 }
 
 @test "results of scenes without their query are counted, and rows of pairs printed" {

@@ -62,12 +62,13 @@ u32() {
 }
 
 @test "the answers of a single query are those in the log" {
-    generate --blast pairs 40 --by-handle --box --certificate "$log"
+    generate --blast pairs 40 --by-handle --box --point --certificate "$log"
     "$FMB" replay "$log" --write-golden "$T/golden.log" > "$T/said"
     for event in 20 41 78; do
         scene 0 "$log" --event "$event"
-        answers --box --certificate > "$T/$event.json"
-        jq -e '.pairs[0] | has("certificate") and .a != .b' "$T/$event.json" > "$T/jq"
+        said "to repeat it: fmb query --local --json --box --point --certificate"
+        answers --box --point --certificate > "$T/$event.json"
+        jq -e '.pairs[0] | has("certificate") and .a != .b and has("contact") == has("point")' "$T/$event.json" > "$T/jq"
     done
     # By any of its names it is the same.
     scene 0 "$log" --event 40

@@ -145,6 +145,25 @@ xpath() {
 }
 
 # bats test_tags=release
+@test "an altered point is a difference beyond --tolerance" {
+    generate --blast pairs 10 --dim 3 --box --point points.log
+    edit --nudge "$("$FMB" log results --json --all points.log | jq -s 'map(.point != null) | index(true)')" 1e-9 points.log
+    replay spoiled.log
+    ended 1
+    counts '.different_in.point == 1 and .different == 1' \
+        '.differences[0] | .then.point.position[0] != .now.point.position[0] and .then.point.time == .now.point.time' \
+        '.differences[0] | .kind == "point" and .then.box == .now.box'
+    run "$FMB" replay spoiled.log
+    ended 1
+    [[ ${lines[0]} =~ \ \ point\ position\ x:\ [-0-9.e]+,\ now\ [-0-9.e]+\ \(-1e-09\)$ ]]
+    [[ $output == *'different in: 1 point'* ]]
+    replay --tolerance 1e-15 spoiled.log
+    ended 1
+    replay --tolerance 1e-6 spoiled.log
+    ended 0
+}
+
+# bats test_tags=release
 @test "an altered gap of a pair and of a scene is a difference" {
     for n in $(seq 0 19); do
         edit --nudge "$n" 1e-9 apart.log

@@ -36,9 +36,9 @@ static bool is_box(const fmb_msgs_pair_result_t *message)
 
 bool results_is_point(const double *point, int count)
 {
-    bool good = point[0] >= 0;
-    for (int i = 0; i < count && good; i++)
-        good = fabs(point[i]) <= DBL_MAX;
+    bool good = point[0] >= 0 && point[0] <= DBL_MAX;
+    for (int i = 1; i < count && good; i++)
+        good = point[i] == point[i];
     return good;
 }
 
@@ -73,11 +73,9 @@ bool results_is_gap(int verdict, int dim, const struct results_gap *gap)
         good = good && gap->frames[0] >= 0 && gap->frames[1] >= 0;
     if (!gap->witness)
         return good && verdict >= FMB_MSGS_PAIR_RESULT_T_VERDICT_TOUCHING;
-    for (int i = 1; i < 1 + 2 * dim; i++)
-        good = good && gap->witness[i] == gap->witness[i];
     good = good && (verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_SEPARATED ||
                     verdict == FMB_MSGS_PAIR_RESULT_T_VERDICT_OVERLAPPING);
-    return good && gap->witness[0] >= 0 && gap->witness[0] <= DBL_MAX;
+    return good && results_is_point(gap->witness, 1 + 2 * dim);
 }
 
 bool results_same_gap(const struct fmb_gap *read, int dim, const struct results_gap *gap)

@@ -45,6 +45,7 @@ static const char usage[] =
     "  --by-handle     pairs by handle, as soon as it is known\n"
     "  --compound      pairs of bodies of 1 to 8 frames\n"
     "  --box           pairs with boxes\n"
+    "  --point         pairs with points\n"
     "  --certificate   pairs with certificates\n"
     "  --gap           pairs with gaps\n"
     "  --list          prints the kinds\n"
@@ -67,6 +68,7 @@ enum {
     BY_HANDLE,
     COMPOUND,
     BOX,
+    POINT,
     CERTIFICATE,
     GAP,
     LIST,
@@ -84,6 +86,7 @@ static const struct option long_options[] = {{"blast", required_argument, NULL, 
                                              {"by-handle", no_argument, NULL, BY_HANDLE},
                                              {"compound", no_argument, NULL, COMPOUND},
                                              {"box", no_argument, NULL, BOX},
+                                             {"point", no_argument, NULL, POINT},
                                              {"certificate", no_argument, NULL, CERTIFICATE},
                                              {"gap", no_argument, NULL, GAP},
                                              {"list", no_argument, NULL, LIST},
@@ -133,6 +136,7 @@ static bool take(int option, char **argv, struct options *out)
     case BY_HANDLE: out->blast.by_handle = 1; return true;
     case COMPOUND: out->blast.compound = true; return true;
     case BOX: out->blast.want |= FMB_WANT_BOX; return true;
+    case POINT: out->blast.want |= FMB_WANT_POINT; return true;
     case CERTIFICATE: out->blast.want |= FMB_WANT_CERTIFICATE; return true;
     case GAP: out->blast.want |= FMB_WANT_GAP; return true;
     default: return refuse("wrong option", argv[optind - 1]);

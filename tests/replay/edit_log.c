@@ -224,7 +224,9 @@ static void flip_scene(const char *argument)
 
 static void nudge_pair(const char *argument)
 {
-    if (pair.answer.has_box)
+    if (pair.answer.has_point)
+        pair.answer.point[1] += atof(argument);
+    else if (pair.answer.has_box)
         pair.answer.box[1][0] += atof(argument);
     else if (pair.answer.has_contact)
         pair.answer.contact[1] += atof(argument);
@@ -236,7 +238,9 @@ static void nudge_pair(const char *argument)
 
 static void nudge_scene(const char *argument)
 {
-    if (scene.has_boxes)
+    if (scene.has_points)
+        scene.points[1] += atof(argument);
+    else if (scene.has_boxes)
         scene.boxes[scene.dim] += atof(argument);
     else if (scene.has_times)
         scene.times[1] += atof(argument);
@@ -260,7 +264,8 @@ static void refuse_scene(const char *status)
     scene.unknown_count = scene.status == FMB_UNKNOWN_BODY;
     scene.unknown[0] = 0;
     scene.handle_count = scene.verdict_count = scene.contact_count = 0;
-    scene.names_pairs = scene.has_times = scene.has_boxes = scene.has_gaps = false;
+    scene.names_pairs = scene.has_times = scene.has_boxes = false;
+    scene.has_points = scene.has_gaps = false;
 }
 
 static void certify_pair(const char *text)

@@ -680,7 +680,7 @@ fmb: start one with 'fmbd "*"--prefix quiet- &'" ]]
     start_fmbd
     start_watch --json
     start_record "$log"
-    for options in '' --box --certificate --gap; do
+    for options in '' --box --point --certificate --gap; do
         # shellcheck disable=SC2086
         "$FMB" query $options "$BATS_TEST_TMPDIR/table.json" > /dev/null
         query $options

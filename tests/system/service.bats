@@ -14,9 +14,17 @@ same_answers() {
 @test "the bus gives the answers of --local" {
     start_fmbd
     for dim in 2 3; do random_scene $dim 40; done > "$BATS_TEST_TMPDIR/scenes.json"
-    same_answers --box "$BATS_TEST_TMPDIR/scenes.json"
+    same_answers --box --point "$BATS_TEST_TMPDIR/scenes.json"
     holds -s "$BATS_TEST_TMPDIR/bus" 'map(.pairs | length) == [780, 780]' \
-        'all(.[]; [.pairs[] | select(.box)] | length > 10)'
+        'all(.[]; [.pairs[] | select(.box and .point)] | length > 10)' \
+        'all(.[].pairs[]; has("box") == has("point"))'
+    # Overlapping in [0.5,1] x [0,1] x [0,1]: a point of the pair, then of a scene of more bodies.
+    overlap='{"id": 1, "shape": "box", "size": [1,1,1], "position": [0.5,0.5,0.5]},
+        {"id": 2, "shape": "box", "size": [1,1,1], "position": [1,0.5,0.5]}'
+    for more in '' ', {"id": 3, "shape": "box", "size": [1,1,1], "position": [9,0,0]}'; do
+        "$FMB" query --json --point <<< "{\"dim\": 3, \"bodies\": [$overlap$more]}" > "$BATS_TEST_TMPDIR/bus"
+        holds -s "$BATS_TEST_TMPDIR/bus" '.[0].pairs[0].point == {time: 0, position: [0.75, 0.5, 0.5]}'
+    done
     stop_fmbd
 }
 
@@ -24,11 +32,11 @@ same_answers() {
 @test "the cases give the answers of --local, by every method" {
     start_fmbd
     jq -c .scene tests/cases/*.json > "$BATS_TEST_TMPDIR/scenes.json"
-    for method in certified exact; do same_answers --box --method $method "$BATS_TEST_TMPDIR/scenes.json"; done
+    for method in certified exact; do same_answers --box --point --method $method "$BATS_TEST_TMPDIR/scenes.json"; done
     for method in fmb sat; do
         local_code=0 bus_code=0
-        "$FMB" query --box --json --local --method $method "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local" || local_code=$?
-        "$FMB" query --box --json --method $method "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/bus" || bus_code=$?
+        "$FMB" query --box --point --json --local --method $method "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local" || local_code=$?
+        "$FMB" query --box --point --json --method $method "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/bus" || bus_code=$?
         [ $local_code = $bus_code ]
         # Why a pair cannot be decided may be said in other words.
         [ "$(jq -s 'map((.pairs[]? | select(.error)).error = "error") | length > 10 and .[:length / 2] == .[length / 2:]' \
@@ -50,7 +58,7 @@ shared='{"label": "mesh \u20ac", "dim": 3, "bodies": [
 
 @test "vertices, groups, labels and frames of gaps: the bus gives the answers of --local" {
     start_fmbd
-    for options in '' --gap '--gap --box' --certificate; do
+    for options in '' --gap '--gap --box --point' --certificate; do
         # The bodies of the second scene go by handle. Pairs within the group: 2 and 4, 2 and 6, 4 and 6.
         echo "$shared $shared" > "$BATS_TEST_TMPDIR/scenes.json"
         # shellcheck disable=SC2086
@@ -115,7 +123,7 @@ grid_scenes() {
     start_fmbd
     grid_scenes > "$BATS_TEST_TMPDIR/all.json"
     sed 's/{/{"margin":0.75,/' "$BATS_TEST_TMPDIR/all.json" > "$BATS_TEST_TMPDIR/near.json"
-    for options in '--gap all' '--gap --box --certificate all' '--box near' '--gap near' '--certificate near'; do
+    for options in '--gap all' '--gap --box --certificate --point all' '--box near' '--gap near' '--certificate near'; do
         # shellcheck disable=SC2086
         same_answers ${options% *} "$BATS_TEST_TMPDIR/${options##* }.json"
         case $options in
@@ -188,17 +196,17 @@ parts='def parts: unique_by(.end_pair) | map(.pairs) | add; '
 }
 
 # bats test_tags=release
-@test "watch shows the pairs of scenes with times, boxes and gaps, in JSON" {
+@test "watch shows the pairs of scenes with times, boxes, points and gaps, in JSON" {
     grid_scene 3 1 | sed 's/{/{"margin":0.75,"duration":2,/' | jq -c '.bodies[0].velocity = [0.1, 0, 0.25]' > "$BATS_TEST_TMPDIR/all"
     jq -c '.pairs = [[2, 1], [1, 2], [1, 6], [3, 7]] | del(.margin)' "$BATS_TEST_TMPDIR/all" > "$BATS_TEST_TMPDIR/listed"
     start_fmbd
     for scene in all listed; do
         start_watch --json
-        "$FMB" query --box --json "$BATS_TEST_TMPDIR/$scene" > "$BATS_TEST_TMPDIR/bus"
+        "$FMB" query --box --point --json "$BATS_TEST_TMPDIR/$scene" > "$BATS_TEST_TMPDIR/bus"
         wait_until_watched "last.end_pair == $(jq '.pairs | length' "$BATS_TEST_TMPDIR/bus")"
         jq -es --slurpfile bus "$BATS_TEST_TMPDIR/bus" --arg scene $scene "$parts"'
             [$bus[0].pairs[] | select(.verdict != "separated" or .gap or $scene == "listed")] as $wanted
-            | parts == $wanted and ($wanted | length) > 3 and any($wanted[]; .contact and .box)' "$watched"
+            | parts == $wanted and ($wanted | length) > 3 and any($wanted[]; .contact and .box and .point)' "$watched"
         kill -INT "$watch"
         wait "$watch"
     done

@@ -144,15 +144,16 @@ enum {
     BOX = FMB_WANT_BOX,
     CERTIFICATE = FMB_WANT_CERTIFICATE,
     TIMES = FMB_WANT_TIMES,
-    GAP = FMB_WANT_GAP
+    GAP = FMB_WANT_GAP,
+    POINT = FMB_WANT_POINT
 };
 
 static void every_kind_of_difference_is_found(void **state)
 {
-    const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE | GAP);
+    const struct pair_query query = pair(3, 0.5, 1, BOX | CERTIFICATE | GAP | POINT);
     const struct pair_result now = answer(&query);
     assert_true(now.answer.has_box && now.answer.has_contact && now.certificate);
-    assert_true(now.answer.has_gap);
+    assert_true(now.answer.has_gap && now.answer.has_point);
     struct pair_result then = now;
     expect_same(0, &query, &then, &now);
     char other[FMB_CERTIFICATE_MAX];
@@ -173,6 +174,10 @@ static void every_kind_of_difference_is_found(void **state)
     expect_kind(0, &query, &then, &now, DIFFERENT_GAP);
     then.answer.has_gap = false;
     expect_kind(0, &query, &then, &now, DIFFERENT_GAP);
+    then.answer.point[3] = nextafter(then.answer.point[3], 9);
+    expect_kind(0, &query, &then, &now, DIFFERENT_POINT);
+    then.answer.has_point = false;
+    expect_kind(0, &query, &then, &now, DIFFERENT_POINT);
     then.answer.box[1][2] = nextafter(then.answer.box[1][2], 9);
     expect_kind(0, &query, &then, &now, DIFFERENT_BOX);
     then.answer.has_box = false;
@@ -340,7 +345,7 @@ static void bounds_of_gaps_are_compared(void **state)
         }
 }
 
-/* Overlapping bodies have no nearest points: the coordinates are those of the query. */
+/* Of bodies that overlap: the coordinates are those of the query. */
 static void expect_scale(const struct pair_query *query, double scale)
 {
     struct pair_result then = {.dim = 3}, now;
@@ -401,6 +406,22 @@ static void with_a_tolerance_certificates_may_differ(void **state)
     then = now;
     then.answer.has_contact = false;
     expect_kind(1, &query, &then, &now, DIFFERENT_INTERVAL);
+}
+
+/* The time of a point by the duration, 2 s; its coordinates by the largest of the query, 5. */
+static void points_are_compared_with_the_tolerance(void **state)
+{
+    const struct pair_query query = query_of_ends(3, 5, 0);
+    struct pair_result then = {.dim = 3}, now;
+    then.answer = (struct fmb_answer){
+        .verdict = FMB_OVERLAPPING, .has_contact = true, .has_point = true, .point = {1, 1, 1, 1}};
+    for (int i = 0; i < 4; i++) {
+        now = then;
+        now.answer.point[i] += i ? 1.25 : 0.5;
+        expect_same(0.251, &query, &then, &now);
+        expect_kind(0.249, &query, &then, &now, DIFFERENT_POINT);
+        expect_kind(0, &query, &then, &now, DIFFERENT_POINT);
+    }
 }
 
 /* A box of the other dimension is another box, though all numbers that both have be the same. */
@@ -987,6 +1008,7 @@ int main(void)
         TEST(bounds_of_gaps_are_compared),
         TEST(a_tolerance_is_relative_to_the_largest_coordinate),
         TEST(with_a_tolerance_witness_points_may_differ),
+        TEST(points_are_compared_with_the_tolerance),
         TEST(with_a_tolerance_certificates_may_differ),
         TEST(boxes_of_another_dimension_differ),
         TEST(scenes_compare_as_the_model),

@@ -367,7 +367,14 @@ static void points_are_read_back(void **state)
             wire_write_pair_result(&result, bytes);
             assert_non_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
             result.answer.point[0] = 0;
-            result.answer.point[dim] = INFINITY;
+            result.answer.point[dim] = NAN;
+            wire_write_pair_result(&result, bytes);
+            assert_non_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
+            result.answer.point[dim] = -INFINITY; /* beyond the largest double */
+            wire_write_pair_result(&result, bytes);
+            assert_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
+            assert_true(query_same_answer(&read.answer, &result.answer));
+            result.answer.point[0] = INFINITY;
             wire_write_pair_result(&result, bytes);
             assert_non_null(wire_read_pair_result(bytes, (uint32_t) size, &read));
         }
