@@ -59,7 +59,7 @@ __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPP
 
 # ---- The library: fmb_flat.h ----
 
-_ABI = 1
+_ABI = 2
 _SONAME = "libfmb-client.so.0"
 _WHY_MAX = 512
 
@@ -98,7 +98,7 @@ def _load() -> ctypes.CDLL:
             ("fmb_flat_decide", integer, (pointer, pointer, real, integer, integer, real, long,
                                           pointer, size, pointer, size, text)),
             ("fmb_flat_count", size, (pointer,)),
-            ("fmb_flat_answers", None, 11 * (pointer,))):
+            ("fmb_flat_answers", None, 12 * (pointer,))):
         function = getattr(held if name == "fmb_flat_place" else library, name)
         function.restype, function.argtypes = result, arguments
         setattr(library, name, function)
@@ -106,7 +106,7 @@ def _load() -> ctypes.CDLL:
 
 
 _lib = _load()
-_WANT_BOX, _WANT_TIMES, _WANT_GAP = 1, 4, 8
+_WANT_BOX, _WANT_TIMES, _WANT_GAP, _WANT_POINT = 1, 4, 8, 16
 _NO_SERVICE, _NO_MEMORY = -2, -4
 _HULL_VERTICES_MAX = 1024
 
@@ -541,15 +541,16 @@ class Answer(NamedTuple):
     verdict: Optional[Verdict]
     contact: Optional[tuple[float, float]]  #: first and last time of contact, seconds
     box: Optional[tuple[Vector, Vector]]  #: lower and upper corner of the intersection, (dim,) each
+    point: Optional[tuple[float, Vector]]  #: a time, and a point (dim,) of both bodies at that time
     gap: Optional[tuple[float, float]]  #: lower and upper bound of the signed distance
     direction: Optional[Vector]  #: of the gap, from a to b, (dim,)
-    time: Optional[float]  #: of the least distance, seconds; of separated pairs only
-    witness: Optional[tuple[Vector, Vector]]  #: the nearest points of a and b at that time
+    time: Optional[float]  #: of the witness points, seconds; None if the gap has none
+    witness: Optional[tuple[Vector, Vector]]  #: the nearest points of a and b, or the deepest ones
     frames: Optional[tuple[int, int]]  #: indices of the frames of a and b that have this gap
 
 
-def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any, box: Any, gap: Any,
-            direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
+def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any, box: Any, point: Any,
+            gap: Any, direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
     """Makes an Answer of lists of numbers. A list is None, or begins with NaN, if it has no value."""
 
     def known(values: Any) -> Any:
@@ -559,9 +560,9 @@ def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any,
         values = known(values)
         return values and (values[:len(values) // 2], values[len(values) // 2:])
 
-    gap = known(gap)
+    gap, point = known(gap), known(point)
     return Answer(a, b, (names[a], names[b]), status, _VERDICTS[verdict], known(contact), halves(box),
-                  gap, *(tuple(direction), known(time) and time[0], halves(witness), tuple(frames))
+                  point and (point[0], point[1:]), gap, *(tuple(direction), known(time) and time[0], halves(witness), tuple(frames))
                   if gap else (None,) * 4)
 
 
@@ -595,18 +596,21 @@ class Answers(Sequence):
     statuses: (n,) int32, 0; or why there is no verdict
     contacts: (n, 2), first and last time of contact, seconds; NaN for pairs that never meet
     boxes: (n, 2, dim), [pair][lower, upper][axis] of the intersection; NaN for pairs that never meet
+    points: (n, 1 + dim), [pair][time, then coordinates] of a point of both; NaN for pairs that never meet
     gaps: (n, 2), lower and upper bound of the signed distance; NaN if there is none. The arrays below
         are then undefined
     directions: (n, dim), of the gap, from a to b
-    times: (n,), of the least distance, seconds; NaN unless the pair is separated
-    witnesses: (n, 2, dim), [pair][of a, of b], the nearest points at that time; NaN likewise
+    times: (n,), of the witness points, seconds; NaN if there are none. Separated pairs have them, and
+        pairs that overlap may
+    witnesses: (n, 2, dim), [pair][of a, of b], the nearest or deepest points at that time; NaN likewise
     frames: (n, 2) int64, indices of the frames of a and b that have this gap
     """
 
     def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
         self._names = names
         self._count = n = _lib.fmb_flat_count(handle)
-        contact, corners, gap = wanted & _WANT_TIMES, wanted & _WANT_BOX, wanted & _WANT_GAP
+        contact, corners, point, gap = (
+            wanted & bit for bit in (_WANT_TIMES, _WANT_BOX, _WANT_POINT, _WANT_GAP))
 
         def new(wanted: Any, code: str, *shape: int) -> Any:  # of zeros
             if not wanted:
@@ -617,10 +621,10 @@ class Answers(Sequence):
             return out.cast(code, (n or 1,) + shape)[:n]
 
         columns = (new(pairs is None, "q", 2), new(True, "B"), new(True, "i"), new(contact, "d", 2),
-                   new(corners, "d", 2, dim), new(gap, "d", 2), new(gap, "d", dim), new(gap, "d"),
-                   new(gap, "d", 2, dim), new(gap, "q", 2))
+                   new(corners, "d", 2, dim), new(point, "d", 1 + dim), new(gap, "d", 2),
+                   new(gap, "d", dim), new(gap, "d"), new(gap, "d", 2, dim), new(gap, "q", 2))
         _lib.fmb_flat_answers(handle, *map(_pointer, columns))
-        (self.pairs, self.verdicts, self.statuses, self.contacts, self.boxes, self.gaps,
+        (self.pairs, self.verdicts, self.statuses, self.contacts, self.boxes, self.points, self.gaps,
          self.directions, self.times, self.witnesses, self.frames) = map(_rows, columns)
         if pairs is not None:
             self.pairs = _rows(pairs) if numpy is None else numpy.asarray(pairs)
@@ -638,8 +642,8 @@ class Answers(Sequence):
 
         a, b = row(self.pairs, "q")
         return _answer(self._names, a, b, int(self.statuses[k]), int(self.verdicts[k]),
-                       row(self.contacts), row(self.boxes), row(self.gaps), row(self.directions),
-                       row(self.times), row(self.witnesses), row(self.frames, "q"))
+                       row(self.contacts), row(self.boxes), row(self.points), row(self.gaps),
+                       row(self.directions), row(self.times), row(self.witnesses), row(self.frames, "q"))
 
 
 # ---- The bus ----
@@ -747,8 +751,8 @@ class Scene(_Handle):
         n = len(self.bodies)
         real = ctypes.c_double
         # The columns of fmb_flat_answers() for one answer, verdicts first.
-        self._one = (ctypes.c_uint8 * 1, ctypes.c_int32 * 1, real * 2, real * (2 * dim), real * 2,
-                     real * dim, real * 1, real * (2 * dim), ctypes.c_int64 * 2)
+        self._one = (ctypes.c_uint8 * 1, ctypes.c_int32 * 1, real * 2, real * (2 * dim),
+                     real * (1 + dim), real * 2, real * dim, real * 1, real * (2 * dim), ctypes.c_int64 * 2)
         self._one = tuple(column() for column in self._one)
         self.names = (None,) * n if names is None else tuple(_iterate("names", names))
         if len(self.names) != n:
@@ -805,29 +809,31 @@ class Scene(_Handle):
                 raise _error(status, next(n for n in poses if n[:4] == argument[:4]) + text)
             self._check(status)
 
-    def pair(self, a: int, b: int, duration: float, *, box: bool = False, gap: bool = False,
-             client: Optional[Client] = None) -> Answer:
+    def pair(self, a: int, b: int, duration: float, *, box: bool = False, point: bool = False,
+             gap: bool = False, client: Optional[Client] = None) -> Answer:
         """Decides one pair over the window [0, duration], in seconds. Groups are not considered. Raises
         Error or BusError if it has no answer.
 
         a, b: indices of bodies
-        box, gap: also wanted, besides verdict and contact
+        box, point, gap: also wanted, besides verdict and contact
         client: decides the pair; None: in process
         """
         a, b, duration = _int("a", a), _int("b", b), _float("duration", duration)
         with self._lock, _lock_of(client):
             self._check(_lib.fmb_flat_pair(
                 self._handle, _handle_of(client), a, b, duration,
-                (_WANT_BOX if box else 0) + (_WANT_GAP if gap else 0)), "pair: ", client)
+                (_WANT_BOX if box else 0) + (_WANT_POINT if point else 0) + (_WANT_GAP if gap else 0)),
+                "pair: ", client)
             one = self._one
             _lib.fmb_flat_answers(self._handle, None, *one)
             return _answer(self.names, a, b, 0, one[0][0], one[2][:], one[3][:] if box else None,
-                           *[column[:] for column in one[4:]] if gap else (None,) * 5)
+                           one[4][:] if point else None,
+                           *[column[:] for column in one[5:]] if gap else (None,) * 5)
 
     def decide(self, duration: float, *, pairs: Optional[Array] = None,
                split: Optional[int] = None, ignored: Optional[Array] = None, margin: float = 0,
                instant: bool = False, contacts: bool = False, boxes: bool = False,
-               gaps: bool = False, label: Optional[str] = None,
+               points: bool = False, gaps: bool = False, label: Optional[str] = None,
                client: Optional[Client] = None) -> Answers:
         """Decides pairs over the window [0, duration], in seconds.
 
@@ -838,7 +844,7 @@ class Scene(_Handle):
         ignored: (m, 2) int64, pairs that are not tested; not with pairs
         margin: separated pairs at most this far apart are near; they have gaps, as do pairs that meet
         instant: the window is [0, 0] even if bodies move; duration is 0
-        contacts, boxes, gaps: also wanted, besides verdicts
+        contacts, boxes, points, gaps: also wanted, besides verdicts
         label: for monitoring the bus, at most 64 bytes of UTF-8 without control characters
         client: decides the pairs; None: in process
 
@@ -854,7 +860,7 @@ class Scene(_Handle):
             raise ValueError(f"split: {first} is negative")
         duration, margin = _float("duration", duration), _float("margin", margin)
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
-            _WANT_GAP if gaps else 0)
+            _WANT_POINT if points else 0) + (_WANT_GAP if gaps else 0)
         with self._lock, _lock_of(client):
             status = _lib.fmb_flat_decide(
                 self._handle, _handle_of(client), duration, bool(instant), want, margin, first,

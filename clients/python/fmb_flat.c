@@ -93,11 +93,12 @@ struct column {
 };
 
 /* Columns of the answers. */
-enum { PAIRS, VERDICTS, STATUSES, CONTACTS, BOXES, GAPS, COLUMN_COUNT };
+enum { PAIRS, VERDICTS, STATUSES, CONTACTS, BOXES, POINTS, GAPS, COLUMN_COUNT };
 
 static const size_t column_width[COLUMN_COUNT] = {
-    sizeof(unsigned[2]), sizeof(unsigned char),          sizeof(int32_t),
-    sizeof(double[2]),   sizeof(double[2][FMB_DIM_MAX]), sizeof(struct fmb_gap)};
+    sizeof(unsigned[2]),   sizeof(unsigned char),          sizeof(int32_t),
+    sizeof(double[2]),     sizeof(double[2][FMB_DIM_MAX]), sizeof(double[1 + FMB_DIM_MAX]),
+    sizeof(struct fmb_gap)};
 
 struct fmb_flat_scene {
     size_t placement_count;
@@ -310,6 +311,7 @@ static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *sce
                                                       .verdicts = column_if(flat, VERDICTS),
                                                       .contacts = column_if(flat, CONTACTS),
                                                       .boxes = column_if(flat, BOXES),
+                                                      .points = column_if(flat, POINTS),
                                                       .gaps = column_if(flat, GAPS)});
 }
 
@@ -329,7 +331,8 @@ static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *sce
             return FMB_CLIENT_NO_MEMORY;
         }
         const void *from[COLUMN_COUNT] = {answers.pairs,    answers.verdicts, NULL,
-                                          answers.contacts, answers.boxes,    answers.gaps};
+                                          answers.contacts, answers.boxes,    answers.points,
+                                          answers.gaps};
         for (int c = 0; c < COLUMN_COUNT; c++)
             if (flat->has[c] && answers.count)
                 memcpy((char *) flat->column[c].data + flat->count * column_width[c], from[c],
@@ -361,6 +364,9 @@ static void append(void *user, const struct fmb_client_answer *of)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             ((double(*)[2][FMB_DIM_MAX]) scene->column[BOXES].data)[k][i][axis] =
                 answer->has_box ? answer->box[i][axis] : NAN;
+    for (int i = 0; scene->has[POINTS] && i < 1 + FMB_DIM_MAX; i++)
+        ((double(*)[1 + FMB_DIM_MAX]) scene->column[POINTS].data)[k][i] =
+            answer->has_point ? answer->point[i] : NAN;
     if (scene->has[GAPS])
         ((struct fmb_gap *) scene->column[GAPS].data)[k] =
             answer->has_gap ? answer->gap : (struct fmb_gap){.bounds = {NAN, NAN}};
@@ -376,6 +382,7 @@ static void begin_answers(struct fmb_flat_scene *scene, bool pairs, bool statuse
     scene->has[STATUSES] = statuses;
     scene->has[CONTACTS] = want & FMB_WANT_TIMES;
     scene->has[BOXES] = want & FMB_WANT_BOX;
+    scene->has[POINTS] = want & FMB_WANT_POINT;
     scene->has[GAPS] = want & FMB_WANT_GAP;
 }
 
@@ -459,8 +466,8 @@ size_t fmb_flat_count(const struct fmb_flat_scene *scene)
     return scene->count;
 }
 
-/* Copies vectors of dim axes, unless from or out is NULL. from: the first vector; rows are stride
- * bytes apart and have `vectors` vectors each. */
+/* Copies vectors of dim numbers, unless from or out is NULL. from: the first vector; rows are
+ * stride bytes apart and have `vectors` vectors each. */
 static void spread(const struct fmb_flat_scene *scene, const void *from, size_t stride, int vectors,
                    int dim, double *out)
 {
@@ -472,8 +479,9 @@ static void spread(const struct fmb_flat_scene *scene, const void *from, size_t 
 }
 
 void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
-                      int32_t *statuses, double *contacts, double *boxes, double *gaps,
-                      double *directions, double *times, double *witnesses, int64_t *frames)
+                      int32_t *statuses, double *contacts, double *boxes, double *points,
+                      double *gaps, double *directions, double *times, double *witnesses,
+                      int64_t *frames)
 {
     const size_t n = scene->count;
     const struct column *column = scene->column;
@@ -493,6 +501,8 @@ void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_
         memcpy(contacts, column[CONTACTS].data, n * sizeof(double[2]));
     spread(scene, scene->has[BOXES] ? column[BOXES].data : NULL, column_width[BOXES], 2, scene->dim,
            boxes);
+    spread(scene, scene->has[POINTS] ? column[POINTS].data : NULL, column_width[POINTS], 1,
+           1 + scene->dim, points);
     if (!gap)
         return;
     spread(scene, gap->bounds, sizeof *gap, 1, 2, gaps);

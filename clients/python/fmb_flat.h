@@ -22,7 +22,7 @@ extern "C" {
 
 /* The number of this interface. It is raised when a function changes or is removed. fmb_flat_abi()
  * returns that of the library. */
-enum { FMB_FLAT_ABI = 1 };
+enum { FMB_FLAT_ABI = 2 };
 int fmb_flat_abi(void);
 
 /* ---- Bodies ---- */
@@ -85,7 +85,7 @@ struct fmb_client;
 
 /* Decides one pair, and keeps the answer in the scene, as the only one. Groups are not considered.
  * In:  client  NULL: in process, as fmb_decide(); or as fmb_client_query_pair()
- *      want    a sum of FMB_WANT_BOX and FMB_WANT_GAP; contacts are always given
+ *      want    a sum of FMB_WANT_BOX, FMB_WANT_POINT and FMB_WANT_GAP; contacts are always given
  * Returns a status of these functions; FMB_BAD_PAIR if a or b is not a placement, or a == b. */
 int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
                   double duration, unsigned want);
@@ -94,7 +94,7 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
  * otherwise of those that touch, overlap, are near, or have no verdict.
  * In:  client   NULL: in process; or as fmb_client_query()
  *      instant  not 0: the window is [0, 0] even if bodies move
- *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX and FMB_WANT_GAP
+ *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX, FMB_WANT_POINT and FMB_WANT_GAP
  *      split    pairs of the first split placements with the others; negative: all pairs
  *      pairs    [pair_count][2], a list, with which split is not read; NULL: no list
  *      ignored  [ignored_count][2]; none with a list
@@ -117,15 +117,17 @@ size_t fmb_flat_count(const struct fmb_flat_scene *scene);
  *                  one, they are not set
  *      contacts    [n][first, last], NAN unless they meet
  *      boxes       [n][lower, upper][dim], NAN unless they meet
+ *      points      [n][time, coordinates], NAN unless they meet
  *      gaps        [n][lower, upper bound], NAN if there is none; the arrays below are then
  *                  undefined
  *      directions  [n][dim]
- *      times       [n], NAN unless separated
- *      witnesses   [n][of a, of b][dim], NAN unless separated
+ *      times       [n], NAN unless there are witness points
+ *      witnesses   [n][of a, of b][dim], NAN where there are none
  *      frames      [n][of a, of b], indices of the frames that have this gap */
 void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
-                      int32_t *statuses, double *contacts, double *boxes, double *gaps,
-                      double *directions, double *times, double *witnesses, int64_t *frames);
+                      int32_t *statuses, double *contacts, double *boxes, double *points,
+                      double *gaps, double *directions, double *times, double *witnesses,
+                      int64_t *frames);
 
 /* ---- The bus ---- */
 

@@ -76,6 +76,22 @@ rows() {
     done
 }
 
+# As a service may give: a pair that overlaps has witness points too, a deepest pair.
+@test "witness points of bodies that overlap are printed and compared" {
+    generate --blast pairs 100 --dim 3 --static --gap "$T/apart.log"
+    n=$("$FMB" log results --json --all "$T/apart.log" | jq -s 'map(.pairs[0].verdict == "overlapping") | index(true)')
+    "$TOOLS/edit-log" --witness "$n" "$T/apart.log" "$log"
+    results --json --all "$log"
+    ended 0
+    jq -es --argjson n "$n" '.[$n].pairs[0] | .verdict == "overlapping" and .gap[1] < 0 and
+        .witness == {time: 0, a: [1, 2, 3], b: [4, 5, 6]}' <<< "$output"
+    "$FMB" log results --csv --all "$log" | cmp - <("$FMB" log results --csv --all "$T/apart.log")
+    run "$FMB" replay --json "$log"
+    ended 1
+    jq -e '.different == 1 and .different_in.gap == 1 and (.differences[0].then | .witness.b == [4, 5, 6])' <<< "$output"
+    "$FMB" replay --tolerance 1e-12 "$log"
+}
+
 @test "the table has a line for each result, and the pairs of scenes below it" {
     results tests/logs/arm.log
     ended 0

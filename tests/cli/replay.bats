@@ -147,7 +147,7 @@ xpath() {
 # bats test_tags=release
 @test "an altered point is a difference beyond --tolerance" {
     generate --blast pairs 10 --dim 3 --box --point points.log
-    edit --nudge "$("$FMB" log results --json --all points.log | jq -s 'map(.point != null) | index(true)')" 1e-9 points.log
+    edit --nudge "$("$FMB" log results --json --all points.log | jq -s 'map(.pairs[0].point != null) | index(true)')" 1e-9 points.log
     replay spoiled.log
     ended 1
     counts '.different_in.point == 1 and .different == 1' \

@@ -102,6 +102,8 @@ def as_json(answer):
     if answer.box:
         out["box"] = {end: [x if math.isfinite(x) else None for x in corner]
                       for end, corner in zip(("min", "max"), answer.box)}
+    if answer.point:
+        out["point"] = {"time": answer.point[0], "position": list(answer.point[1])}
     if answer.gap:
         out["gap"] = list(answer.gap)
         out["direction"] = list(answer.direction)
@@ -119,7 +121,7 @@ def of_json(pair):
     return out
 
 
-WANTED = {"contacts": True, "boxes": True, "gaps": True}
+WANTED = {"contacts": True, "boxes": True, "points": True, "gaps": True}
 
 
 def in_child(work):
@@ -175,7 +177,7 @@ class Answers(unittest.TestCase):
 
     def test_answers_are_those_of_fmb_query(self):
         scenes = [random_scene(dim, 14, seed) for dim in (2, 3) for seed in range(4)]
-        lines = subprocess.run([os.environ["FMB"], "query", "--local", "--json", "--box", "--gap"],
+        lines = subprocess.run([os.environ["FMB"], "query", "--local", "--json", "--box", "--point", "--gap"],
                                input="\n".join(map(json.dumps, scenes)), check=True, text=True,
                                capture_output=True).stdout.splitlines()
         seen = set()
@@ -203,10 +205,10 @@ class Answers(unittest.TestCase):
         for scene in tight, scene_of(random_scene(2, 8, 1))[0], scene_of(random_scene(3, 8, 2))[0]:
             whole = [as_json(a) for a in scene.decide(1, client=self.client, **WANTED)]
             self.assertGreater(len(whole), 0)
-            for wanted in itertools.product((False, True), repeat=3):
+            for wanted in itertools.product((False, True), repeat=len(WANTED)):
                 answers = scene.decide(1, client=self.client, **dict(zip(WANTED, wanted)))
-                left_out = {"contact", "box", "gap"}.difference(
-                    itertools.compress(("contact", "box", "gap"), wanted))
+                parts = "contact", "box", "point", "gap"
+                left_out = set(parts).difference(itertools.compress(parts, wanted))
                 if "gap" in left_out:
                     left_out.update(("direction", "witness", "frames"))
                 self.assertEqual([as_json(a) for a in answers],
@@ -240,10 +242,10 @@ class Answers(unittest.TestCase):
         left = scene.decide(0.7, ignored=ignored, client=self.client, **WANTED)
         self.assertEqual(list(left), meet[1::2])
         for answer in listed[:40]:
-            self.assertEqual(scene.pair(answer.a, answer.b, 0.7, box=True, gap=True, client=self.client),
-                             answer)
+            self.assertEqual(scene.pair(answer.a, answer.b, 0.7, box=True, point=True, gap=True,
+                                        client=self.client), answer)
         near = [a for a in listed if a.gap[0] <= 0.3]
-        margin = scene.decide(0.7, margin=0.3, contacts=True, boxes=True, client=self.client)
+        margin = scene.decide(0.7, margin=0.3, contacts=True, boxes=True, points=True, client=self.client)
         self.assertEqual(list(margin), near)
         self.assertGreater(len(near), len(meet))
 
@@ -373,9 +375,9 @@ class Arrays(unittest.TestCase):
         self.scene = fmb.Scene([fmb.box([1, 1, 1])] * 3, positions=[[0, 0, 0], [0.5, 0, 0], [3, 0, 0]])
 
     def check(self, array_of, **options):
-        answers = self.scene.decide(0, contacts=True, boxes=True, gaps=True, **options)
+        answers = self.scene.decide(0, **WANTED, **options)
         shapes = {"pairs": (2,), "verdicts": (), "statuses": (), "contacts": (2,), "boxes": (2, 3),
-                  "gaps": (2,), "directions": (3,), "times": (), "witnesses": (2, 3), "frames": (2,)}
+                  "points": (4,), "gaps": (2,), "directions": (3,), "times": (), "witnesses": (2, 3), "frames": (2,)}
         for name, shape in shapes.items():
             column = getattr(answers, name)
             self.assertIsInstance(column, array_of, name)
@@ -392,11 +394,28 @@ class Arrays(unittest.TestCase):
         self.assertEqual(listed.witnesses.tolist()[0][0][0], 2.5)
         self.assertTrue(math.isnan(listed.times.tolist()[1]))
         nothing = self.scene.decide(0)
-        self.assertEqual([nothing.contacts, nothing.boxes, nothing.gaps], [None] * 3)
-        flat = fmb.Scene([fmb.box([1, 1])] * 2).decide(0, boxes=True)
+        self.assertEqual([nothing.contacts, nothing.boxes, nothing.points, nothing.gaps], [None] * 4)
+        flat = fmb.Scene([fmb.box([1, 1])] * 2).decide(0, boxes=True, points=True)
         self.assertEqual(flat.boxes.tolist(), [[[-0.5, -0.5], [0.5, 0.5]]])
+        self.assertEqual(flat.points.tolist(), [[0, 0, 0]])
         for none in (self.scene.decide(0, pairs=[], **WANTED), self.scene.decide(0, split=0, **WANTED)):
             self.assertEqual((len(none), list(none), len(none.gaps)), (0, [], 0))
+
+    def test_points_of_contacts(self):
+        # Two cubes that overlap in [0, 0.5] x [-0.5, 0.5] x [-0.5, 0.5], and one that is apart.
+        self.assertEqual(self.scene.pair(0, 1, 0, point=True).point, (0, (0.25, 0, 0)))
+        self.assertIsNone(self.scene.pair(0, 2, 0, point=True).point)
+        self.assertIsNone(self.scene.pair(0, 1, 0).point)
+        apart = self.scene.decide(0, pairs=[[2, 0], [1, 0]], points=True).points.tolist()
+        self.assertEqual([math.isnan(x) for x in apart[0]], [True] * 4)
+        self.assertEqual(apart[1], [0, 0.25, 0, 0])
+        self.scene.place(velocities=[[0, 0, 0], [0, 0, 0], [-4, -2, 0]])
+        for margin in 0, 1:  # a list without a margin is a batch
+            answers = self.scene.decide(0.5, pairs=[[2, 0], [0, 1], [2, 1]], points=True, margin=margin)
+            self.assertEqual(answers[1].point, (0, (0.25, 0, 0)))
+            time, (x, y, z) = answers[2].point  # the third cube passes the second one
+            self.assertEqual(answers.points.tolist()[2], [time, x, y, z])
+            self.assertTrue(0.375 <= time <= 0.5 and 0 <= x <= 1 and abs(y) <= 0.5 and abs(z) <= 0.5)
 
     def test_answers_outlive_the_next_call(self):
         first = self.scene.decide(0, contacts=True)
@@ -433,8 +452,8 @@ class Arrays(unittest.TestCase):
         self.assertEqual(list(self.scene.decide(0, pairs=[[0, 1], [0, 2]]).verdicts), [2, 1])
 
     def test_rows_of_results_can_be_indexed(self):
-        answers = self.scene.decide(0, pairs=[[2, 0], [1, 0]], contacts=True, boxes=True, gaps=True)
-        for name in ("pairs", "contacts", "boxes", "gaps", "directions", "witnesses", "frames"):
+        answers = self.scene.decide(0, pairs=[[2, 0], [1, 0]], **WANTED)
+        for name in ("pairs", "contacts", "boxes", "points", "gaps", "directions", "witnesses", "frames"):
             column = getattr(answers, name)
             rows = column.tolist()
             with self.subTest(name):

@@ -19,6 +19,7 @@ static const char usage[] =
     "\n"
     "  --flip N           result N says another verdict\n"
     "  --nudge N E        a number of result N is larger by E\n"
+    "  --witness N        the first gap of result N has witness points (1, 2, 3) and (4, 5, 6)\n"
     "  --busy N, --unknown N  result N says that the service was busy, or held no such body\n"
     "  --refuse N STATUS  result N has this status, and nothing else\n"
     "  --certify N TEXT   the certificate of result N\n"
@@ -250,6 +251,26 @@ static void nudge_scene(const char *argument)
         give_up("this result has no numbers");
 }
 
+/* At time 0. */
+static void set_witness(struct fmb_gap *gap)
+{
+    gap->has_witness = true;
+    for (int i = 0; i < 6; i++)
+        gap->witness[i / 3][i % 3] = 1 + i;
+}
+
+static void witness_pair(const char *argument)
+{
+    (void) argument;
+    set_witness(&pair.answer.gap);
+}
+
+static void witness_scene(const char *argument)
+{
+    (void) argument;
+    set_witness(&scene.gap[0]);
+}
+
 static void refuse_pair(const char *status)
 {
     pair = (struct pair_result){.utime = pair.utime,
@@ -296,6 +317,11 @@ static void late_scene(const char *argument)
 static void flip(char **argument)
 {
     change(number(is_result, argument[0]), flip_pair, flip_scene, NULL);
+}
+
+static void witness(char **argument)
+{
+    change(number(is_result, argument[0]), witness_pair, witness_scene, NULL);
 }
 
 static void nudge(char **argument)
@@ -466,6 +492,7 @@ static const struct edit {
 } edits[] = {
     {"--flip", 1, flip},
     {"--nudge", 2, nudge},
+    {"--witness", 1, witness},
     {"--busy", 1, busy},
     {"--unknown", 1, unknown},
     {"--certify", 2, certify},

@@ -36,10 +36,11 @@ setup() {
 @test "the constants of fmb.py are those of the C headers" {
     for number in 'FMB_FLAT_ABI _ABI' 'FMB_CLIENT_WHY_MAX _WHY_MAX' 'FMB_CLIENT_NO_MEMORY _NO_MEMORY' \
         'FMB_CLIENT_NO_SERVICE _NO_SERVICE' 'FMB_HULL_VERTICES_MAX _HULL_VERTICES_MAX' \
-        'FMB_WANT_BOX _WANT_BOX' 'FMB_WANT_TIMES _WANT_TIMES' 'FMB_WANT_GAP _WANT_GAP'; do
+        'FMB_WANT_BOX _WANT_BOX' 'FMB_WANT_TIMES _WANT_TIMES' 'FMB_WANT_GAP _WANT_GAP' \
+        'FMB_WANT_POINT _WANT_POINT'; do
         echo "_Static_assert(${number% *} == $($python -c "import fmb; print(fmb.${number#* })"), \"$number\");"
     done > "$BATS_TEST_TMPDIR/numbers"
-    [ "$(wc -l < "$BATS_TEST_TMPDIR/numbers")" = 8 ]
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/numbers")" = 9 ]
     ${CC:-gcc} -fsyntax-only -Iclients/lib -Iservice/fmb -Imsgs/codec -x c -include clients/python/fmb_flat.h \
         -include clients/lib/fmb_client.h "$BATS_TEST_TMPDIR/numbers"
 }
