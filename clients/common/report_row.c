@@ -164,7 +164,7 @@ void report_row_csv(FILE *out, const struct report_row *row)
 
 /* ---- Tables ---- */
 
-enum { BODY_WIDTH = 4, VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12, POINT_WIDTH = 24 };
+enum { BODY_WIDTH = 4, VERDICT_WIDTH = 11, CONTACT_WIDTH = 20, GAP_WIDTH = 12, POINT_WIDTH = 42 };
 
 /* Width of one end of a box. */
 enum { END_WIDTH = 8 };

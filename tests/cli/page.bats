@@ -32,7 +32,8 @@ setup_file() {
     cp "$top"/tests/page/{drive.html,drive.js,tools.js} "$BATS_FILE_TMPDIR"
     cp "$top/clients/demo/table.json" "$BATS_FILE_TMPDIR/table.json"
     cd "$BATS_FILE_TMPDIR" || return
-    "$fmb" query --local --gap --html table.html table.json > table.said
+    "$fmb" query --local --gap --point --html table.html table.json > table.said
+    edited table.html jq -c 'del(.steps[].pairs[].point)' > pointless.html
     edited table.html jq -c '.steps[].pairs |= map(.bodies |= reverse)' > reversed.html
     "$fmb" query --local --json --html arm.html < "$top/clients/demo/arm.json" > arm.json
     # Every shape, side by side.
@@ -169,6 +170,12 @@ setup() {
     found '.contact.text == "1.900 s" and .contact.hash == "#t=1.9" and .contact.red > 1000
         and .nextContact.text == "0.000 s"'
     found '.opened.facts | .pair == "cube – gripper" and .["box z"] == "0.475 to 0.5" and .gap == "-0.025"'
+}
+
+@test "each contact has a mark at its point, which is listed" {
+    data table.html | jq -e '[.steps[0].pairs[].point | select(.)] | length == 2'
+    found '.opened.violet > .pointless.violet + 40' \
+        '(.opened.facts.point | test("^\\(0\\.[0-9]+, -?[0-9.]+, 0\\.4[0-9]+\\) at 1\\.9[0-9]* s$")) and .pointless.facts.point == null'
 }
 
 @test "the chosen pair has a line between its nearest points" {

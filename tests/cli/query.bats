@@ -434,8 +434,8 @@ overlap="{\"dim\": 3, \"bodies\": [{\"id\": 1, \"shape\": \"box\", \"size\": [1,
     run "$FMB" query --local --point --box --gap <<< "$overlap"
     ended 0
     is "scene 1: 3 bodies in 3D, 3 pairs, 0 to 1 s
-  a  b  verdict      contact               gap           point                     box
-  1  2  overlapping  0 to 1 s              -0.5          (0.75, 0.5, 0.5) at 0 s   x      0.5 .. 1         y        0 .. 1         z        0 .. 1
+  a  b  verdict      contact               gap           point                                       box
+  1  2  overlapping  0 to 1 s              -0.5          (0.75, 0.5, 0.5) at 0 s                     x      0.5 .. 1         y        0 .. 1         z        0 .. 1
   1  3  separated                          2.5
   2  3  separated                          2
 1 overlapping, 0 touching, 2 separated"

@@ -195,6 +195,8 @@ async function scene() {
         target.dispatchEvent(new view.MouseEvent(kind, { bubbles: true, clientX: box.left + x, clientY: box.top + 300, button: 0 }));
     found.orbit = { before, after: direction() };
     found.sorts = await sorted();
+    await open("pointless.html");
+    found.pointless = { ...picture(), ...moment() };
     await open("reversed.html");
     found.reversed = table();
 }

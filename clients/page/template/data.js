@@ -20,11 +20,12 @@ const { steps } = data, isReplay = data.kind === "replay";
 
 /* ---- Scenes and answers as JSON ---- */
 
-/* An answer as the page uses it: {verdict, error, contact, box, gap}. box: lower ends, then upper ends; gap:
- * bounds, and where there are nearest points their time and they. */
-function readAnswer({ verdict, error, contact, box, gap, witness }) {
+/* An answer as the page uses it: {verdict, error, contact, box, point, gap}. box: lower ends, then upper ends;
+ * point: its time, then its position; gap: bounds, and where there are witness points their time and they. */
+function readAnswer({ verdict, error, contact, box, point, gap, witness }) {
     return {
         verdict: Math.max(verdictNames.indexOf(verdict), 0), error, contact, box: box && [...box.min, ...box.max],
+        point: point && [point.time, ...point.position],
         gap: gap && [...gap, ...witness ? [witness.time, ...witness.a, ...witness.b] : []],
     };
 }

@@ -134,7 +134,8 @@ function onTop(colour, object) {
 }
 
 const [boxes, boxesThen, gapLine] = ["box", "diff", "gap"].map((colour) => onTop(colour, new THREE.LineSegments()));
-const gapEnds = onTop("gap", new THREE.Points(undefined, new THREE.PointsMaterial({ size: 7, sizeAttenuation: false })));
+const [marks, marksThen, gapEnds] = ["box", "diff", "gap"].map((colour) =>
+    onTop(colour, new THREE.Points(undefined, new THREE.PointsMaterial({ size: 7, sizeAttenuation: false }))));
 
 function setLines(object, points) {
     object.geometry.dispose();
@@ -305,6 +306,9 @@ function drawAnswers() {
     const shown = stage.streams.flatMap(({ step }) => step.pairs).slice(0, 300);
     setLines(boxes, shown.map((pair) => nowOf(pair).box).filter(Boolean).flatMap(boxPoints));
     setLines(boxesThen, shown.filter(isDifferent).map((pair) => pair[2].box).filter(Boolean).flatMap(boxPoints));
+    const marksOf = (answers) => answers.map(({ point }) => point?.slice(1)).filter((at) => at && !at.includes(null)).map(pointOf);
+    setLines(marks, marksOf(shown.map(nowOf)));
+    setLines(marksThen, marksOf(shown.filter(isDifferent).map((pair) => pair[2])));
     const pair = stage.row && pairNow(stage.row, stage.step);
     const [, , , ...points] = (pair && nowOf(pair).gap) || [];
     const ends = points.length > 0 ? [points.slice(0, points.length / 2), points.slice(points.length / 2)].map(pointOf) : [];

@@ -127,6 +127,8 @@ function factsOf(answer) {
     const dim = (answer.box?.length ?? 0) / 2;
     for (let axis = 0; axis < dim; axis++)
         facts[`box ${"xyz"[axis]}`] = interval(answer.box[axis], answer.box[dim + axis]);
+    if (answer.point)
+        facts.point = `(${answer.point.slice(1).map(short).join(", ")}) at ${short(answer.point[0])} s`;
     if (answer.gap)
         facts.gap = interval(...answer.gap.slice(0, 2));
     return facts;
@@ -134,13 +136,14 @@ function factsOf(answer) {
 
 /* [fact, name, number] of each number of an answer: the fact that shows it rounded. */
 function numbersOf(answer) {
-    const { contact, box, gap } = answer ?? {}, axis = (i, dim) => "xyz"[i % dim];
+    const { contact, box, point, gap } = answer ?? {}, axis = (i, dim) => "xyz"[i % dim];
     const dim = (box?.length ?? 0) / 2, points = ((gap?.length ?? 2) - 3) / 2;
     return [
         ...(contact ?? []).map((number, i) => ["contact", ["first contact", "last contact"][i], number]),
         ...(box ?? []).map((number, i) => [`box ${axis(i, dim)}`, `box ${i < dim ? "min" : "max"} ${axis(i, dim)}`, number]),
+        ...(point ?? []).map((number, i) => ["point", i ? `point ${axis(i - 1, 3)}` : "point, time", number]),
         ...(gap ?? []).map((number, i) => ["gap", ["gap, lower bound", "gap, upper bound", "gap, time"][i]
-            ?? `nearest point of the ${i - 3 < points ? "first" : "second"}, ${axis(i - 3, points)}`, number]),
+            ?? `witness point of the ${i - 3 < points ? "first" : "second"}, ${axis(i - 3, points)}`, number]),
     ];
 }
 
@@ -157,7 +160,7 @@ function addComparison(list, pair) {
     for (const [, name, number] of beyond)
         addFact(list, name, both(exact.get(name) ?? "∞", number ?? "∞"), true);
     if (isDifferent(pair) && differ.length + beyond.length === 0)
-        addFact(list, "gap, direction", "differs", true);
+        addFact(list, "gap, direction or points", "differs", true);
 }
 
 function resultText({ error, method, compute_ns: ns, counts }) {
