@@ -16,6 +16,7 @@
 #define ALONG_X 3, FMB_TETRAHEDRON, {{4, 0, 0}, {0}, {0}}
 #define ALONG_Y 3, FMB_CUBOID, {{0}, {0, 4, 0}, {0}}
 #define STILL {0}, false
+#define FAR_BALL 3, FMB_HULL, {{0}}, {DBL_MAX, -DBL_MAX}, STILL, {DBL_MAX, -DBL_MAX}, .vertex_count = 1
 
 struct rounded_case {
     const char *what;
@@ -39,6 +40,8 @@ static const struct rounded_case rounded_cases[] = {
     {"equal centres", {{BALL, {1, 2, 3}, STILL, .radius = 1}, {BALL, {1, 2, 3}, STILL, .radius = 1}, 1}, FMB_OVERLAPPING},
     {"subnormal radii", {{BALL, {0}, STILL, .radius = 0x1p-1074}, {BALL, {0, 0, 3 * 0x1p-1074}, STILL, .radius = 0x1p-1073}, 1}, FMB_TOUCHING},
     {"the largest radius", {{BALL, {0}, STILL, .radius = DBL_MAX}, {BALL, {DBL_MAX, 0, 0}, STILL}, 1}, FMB_TOUCHING},
+    {"balls beyond the doubles",
+     {{FAR_BALL, .radius = 1}, {FAR_BALL, .radius = 2}, 1}, FMB_OVERLAPPING},
     {"cubes whose faces touch, with a radius", {{CUBE, {0}, STILL, .radius = 0x1p-1074}, {CUBE, {1, 0, 0}, STILL}, 1}, FMB_OVERLAPPING},
     {"rounded cubes, vertex at vertex", {{CUBE, {0}, STILL, .radius = 2}, {CUBE, {3, 4, 7}, STILL, .radius = 5}, 1}, FMB_TOUCHING},
     {"capsules across each other", {{ALONG_X, {-1, 0, 0}, STILL, .radius = 2}, {ALONG_Y, {1, -1, 5}, STILL, .radius = 3}, 1}, FMB_TOUCHING},

@@ -3,6 +3,7 @@
 #include "interval.h"
 #include "programs.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -353,7 +354,8 @@ static double end_of(const struct support_view *view, int axis, double sign,
     end = sum_up(end, scale * position);
     end = sum_up(end, scale * path);
     end = sum_up(end, scale * view->placed.frame->radius);
-    return isnan(end) ? INFINITY : end / scale;
+    /* Less than all doubles: the least one is the next above. */
+    return isnan(end) ? INFINITY : fmax(end / scale, -DBL_MAX);
 }
 
 void support_round_box(const struct support_pair *pair, const double contact[2],
