@@ -34,7 +34,7 @@ static void help(void)
         "\n"
         "  --pairs N      of each family and cell: dimension, motion, shapes (%ld)\n"
         "  --family NAME  this family, or those whose names begin so up to a dash; may be\n"
-        "                 repeated (all but round-)\n"
+        "                 repeated (all)\n"
         "  --seed S       what to draw from\n"
         "  --workers N    threads (one a processor); the counts do not depend on it\n"
         "  --json FILE    write the counts and times of all methods there\n"
@@ -71,13 +71,13 @@ static bool list_cells(struct campaign *campaign)
     const struct options *options = campaign->options;
     size_t families = (size_t) options->families;
     if (families == 0)
-        while (family_any_at(families))
+        while (family_all_at(families))
             families++;
     campaign->measure = calloc(families * CELL_OF_ALL_SHAPES, sizeof *campaign->measure);
     if (!campaign->measure)
         return false;
     for (size_t i = 0; i < families; i++)
-        add_cells(campaign, options->families ? options->family[i] : family_any_at(i));
+        add_cells(campaign, options->families ? options->family[i] : family_all_at(i));
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include "checked_bounds.h"
 #include "families.h"
 #include "posed.h"
+#include "round.h"
 
 static const long usual_pairs = 4;
 
@@ -47,7 +48,7 @@ int main(int argc, char **argv)
         return code;
     for (int i = 0; i < options.families; i++)
         check_family(options.family[i], options.pairs, options.seed);
-    for (size_t i = 0; options.families == 0 && family_any_at(i); i++)
-        check_family(family_any_at(i), options.pairs, options.seed);
+    for (size_t i = 0; options.families == 0 && family_all_at(i); i++)
+        check_family(family_all_at(i), options.pairs, options.seed);
     return check_report(stdout) ? EXIT_NONE_WRONG : EXIT_FOUND;
 }

@@ -350,7 +350,7 @@ static void check_box(const struct kernel_traits traits, const struct fmb_prepar
     if (pair.in_range) {
         places.exact = nothing_rounds(traits, &frame[0], &frame[1], duration, &pair);
         begin_box(&pair, traits, &places, &box);
-        clip_box(&pair, traits, wire, &places, &box, &ends);
+        clip_box(&pair, traits, wire, &places, &box, &ends, NULL);
     }
     arena_clear();
 }
@@ -395,7 +395,7 @@ static void check_vertices(const struct fmb_prepared *const both[2], double dura
         out[f].vertex_count = frame->vertex_count;
         out[f].vertex_stride = frame->vertex_stride;
         out[f].slack = frame->slack;
-        out[f].reach = frame->reach;
+        out[f].reach = frame->core_reach;
         memcpy(out[f].spanning, frame->spanning, sizeof frame->spanning);
         memcpy(out[f].origin, frame->origin, sizeof frame->origin);
         memcpy(out[f].component, frame->component, sizeof frame->component);

@@ -16,10 +16,10 @@ setup() {
             .broken == 0 and .order_verdict == 0 and .refused == 0
             and .false_separated + .false_contact + .false_kind == 0
             and .gap.count == $pairs and .gap.unproven == 0 and .gap.width_max <= 1)" \
-        '[.cells[].methods[] | select(.name == "certified")] | length > 2400' \
+        '[.cells[].methods[] | select(.name == "certified")] | length > 3300' \
         'all(.cells[]; .not_as_made == 0)' \
         '[.families[] | select(.verdict == "touching") | .name] |
-         contains(["touch-face-face", "pose-whole-255", "pose-yaw", "hull-whole-255"])'
+         contains(["touch-face-face", "pose-whole-255", "pose-yaw", "hull-whole-255", "round-slide"])'
     # The picture of tests/bench/README.md, of these counts.
     jq -r --rawfile css tests/report/picture.css -f tests/report/speed_error.jq "$JSON" > "$BATS_TEST_TMPDIR/picture.svg"
     grouped() { sed -E ':a; s/^([0-9]+)([0-9]{3})/\1,\2/; ta' <<< "$1"; }
@@ -30,22 +30,25 @@ setup() {
         | select(.refused < .queries) | [$family, .name]] | unique | length + 4' "$JSON")" ]
     ! command -v xmllint > /dev/null || xmllint --noout "$BATS_TEST_TMPDIR/picture.svg"
     # tests/bench/README.md counts the same families and cells.
-    read -r families posed hulls flat_cells posed_cells hull_cells <<< "$(jq -r '
+    read -r families posed hulls rounds flat_cells posed_cells hull_cells round_cells <<< "$(jq -r '
         def count(test): map(select(test)) | length;
         [.families[].name] as $families | [.cells[].family] as $cells
-        | [($families | length, count(test("^pose-")), count(test("^hull-"))),
-           ($cells | count(test("^(pose|hull)-") | not), count(test("^pose-")), count(test("^hull-")))] | @tsv' "$JSON")"
+        | [($families | length, count(test("^pose-")), count(test("^hull-")), count(test("^round-"))),
+           ($cells | count(test("^(pose|hull|round)-") | not), count(test("^pose-")), count(test("^hull-")),
+            count(test("^round-")))] | @tsv' "$JSON")"
     has() { grep -qF -- "$1" tests/bench/README.md || { echo "not in README.md: $1"; false; }; }
     has "| $families families of hard pairs"
     has "and $posed families posed by quaternions"
-    has "and $hulls families of hulls"
-    has "Of the $((families - posed - hulls)) families that are not turned"
+    has "$hulls families of hulls"
+    has "and $rounds families of shapes with a radius"
+    has "Of the $((families - posed - hulls - rounds)) families that are not turned"
     has "certified: $((2 * 5000 * flat_cells)) queries"
     has "none of $(grouped $((2 * 120 * posed_cells))) queries of posed bodies ($posed families)"
-    has "$((families - hulls)) families, each gap proven"
+    has "$((families - hulls - rounds)) families, each gap proven"
     has "certified: $((40 * (flat_cells + posed_cells))) gaps"
     has "exact: $((40 * (flat_cells + posed_cells))) gaps"
     has "certified: $((10 * hull_cells)) gaps"
+    has "certified: $((10 * round_cells)) gaps"
 }
 
 @test "accuracy: the counts do not depend on the number of workers" {
