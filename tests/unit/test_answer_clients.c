@@ -199,7 +199,7 @@ static void query_pair(struct client *client)
 {
     static struct scene_query whole;
     static const unsigned both[2] = {0, 1};
-    struct pair_query sent = {.want = FMB_WANT_BOX, .duration = 1};
+    struct pair_query sent = {.want = FMB_WANT_BOX | FMB_WANT_POINT, .duration = 1};
     struct pair_result result;
     struct fmb_answer answer;
     whole.duration = 1;
