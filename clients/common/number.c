@@ -1,10 +1,25 @@
 #include "number.h"
 
+#include "allocate.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+locale_t number_begin(void)
+{
+    const locale_t c = newlocale(LC_NUMERIC_MASK, "C", (locale_t) 0);
+    if (!c)
+        allocate_failed();
+    return uselocale(c);
+}
+
+void number_end(locale_t before)
+{
+    freelocale(uselocale(before));
+}
 
 const char *number_exact(double value, char text[NUMBER_TEXT_MAX])
 {

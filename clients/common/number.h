@@ -2,10 +2,17 @@
 #ifndef NUMBER_H
 #define NUMBER_H
 
+#include <locale.h>
 #include <stdint.h>
 #include <stdio.h>
 
 enum { NUMBER_TEXT_MAX = 40 };
+
+/* Numbers are read and printed by functions of C, as in its locale, in which programs start. A
+ * library may run in a program that has called setlocale(): between these calls the locale of C
+ * holds for the thread. Returns that to restore. */
+locale_t number_begin(void);
+void number_end(locale_t before);
 
 /* The fewest of 15, 16 or 17 digits that read back as the same bits: "0.5", "1";
  * "0.10000000000000001" only if "0.1" is another double. Infinite numbers and NaN, which JSON does

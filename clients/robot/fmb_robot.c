@@ -3,6 +3,7 @@
 #include "allocate.h"
 #include "enclosure.h"
 #include "fmb_client.h"
+#include "number.h"
 #include "robot_scene.h"
 #include "turn.h"
 
@@ -134,6 +135,7 @@ int fmb_robot_read(const char *path, const struct fmb_robot_options *options,
                    struct fmb_robot **out)
 {
     static const struct fmb_robot_options defaults;
+    const locale_t locale = number_begin();
     struct fmb_robot *robot = *out = allocate(1, sizeof *robot);
     struct robot *tree = &robot->tree;
     bool good = robot_read(path, tree);
@@ -156,6 +158,7 @@ int fmb_robot_read(const char *path, const struct fmb_robot_options *options,
     robot_lines_text(&tree->errors);
     robot_lines_text(&robot->unknown);
     robot->bad = !good;
+    number_end(locale);
     return good ? 0 : -1;
 }
 

@@ -336,3 +336,35 @@ END
         [ -z "$(find "$prefix" ! -type d)" ]
     done
 }
+
+@test "a robot is the same in a program whose locale has decimal commas" {
+    cd "$BATS_TEST_TMPDIR"
+    printf '%s\n' LC_NUMERIC 'decimal_point ","' 'thousands_sep ""' 'grouping -1' 'END LC_NUMERIC' > comma
+    localedef -c -i comma -f ANSI_X3.4-1968 "$PWD/locale" 2> /dev/null || [ -f locale/LC_NUMERIC ] || skip "localedef makes no locale"
+    printf '%s\n' 'v 0.5 0 0' 'v 0 1.5 0' 'v 0 0 2.5' 'f 1 2 3' > m.obj
+    cat > robot.urdf << 'END'
+<robot name="r"><link name="a"><collision><geometry><box size="0.5 1.5 2.5"/></geometry></collision>
+<collision><geometry><mesh filename="m.obj"/></geometry></collision></link></robot>
+END
+    cat > comma.c << 'END'
+#include <fmb_robot.h>
+#include <locale.h>
+#include <stdio.h>
+int main(void)
+{
+    struct fmb_robot *robot;
+    struct fmb_robot_scene *scene;
+    char text[8];
+    if (!setlocale(LC_NUMERIC, "locale") || fmb_robot_read("robot.urdf", NULL, &robot) != 0) {
+        puts(fmb_robot_why(robot));
+        return 1;
+    }
+    snprintf(text, sizeof text, "%.1f", 0.5); /* the program's own locale holds after the call */
+    fmb_robot_scene(robot, NULL, 0, NULL, 0, &scene);
+    const struct fmb_body *body = fmb_robot_scene_get(scene)->placements[0].body;
+    return text[1] != ',' || body->frames[0].component[1][1] != 1.5 || body->frame_count != 2;
+}
+END
+    $compiler -Wall -Werror comma.c $(pkg-config --cflags --libs fmb-robot) -o comma.out
+    LOCPATH=$PWD ./comma.out
+}
