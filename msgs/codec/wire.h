@@ -8,15 +8,16 @@
  * byte, and no bytes more or less. Results must also be consistent:
  *
  * - A verdict is present if and only if the status is OK; an interval, if and only if the bodies
- *   touch or overlap. A box is present only if they do. Both are ordered. A certificate is present
- *   only with a verdict, is printable ASCII and shorter than FMB_CERTIFICATE_MAX.
+ *   touch or overlap. A box or a point is present only if they do. Intervals and boxes are ordered.
+ *   A certificate is present only with a verdict, is printable ASCII and shorter than
+ *   FMB_CERTIFICATE_MAX.
  * - The bounds of a gap are ordered, and 0 for bodies that touch; its direction is finite. Witness
- *   points are present if the bodies are separated, may be if they overlap. A NaN, where the
- * message types have one, has the bits 7ff8000000000000 (Java's NaN). Indices of frames are not
- * negative, and 0 where a gap is NaN.
- * - A scene has as many named pairs, times, boxes and gaps as its verdicts require. Named pairs are
- *   in order; those that are separated have a gap. Unknown bodies are present if and only if the
- *   status is UNKNOWN_BODY. If the status is not OK, there are no answers.
+ *   points are present if the bodies are separated, absent if they touch, and either if they
+ *   overlap. A NaN, where the message types have one, has the bits 7ff8000000000000 (Java's NaN).
+ *   Indices of frames are not negative, and 0 where a gap is NaN.
+ * - A scene has as many named pairs, times, boxes, points and gaps as its verdicts require. Named
+ *   pairs are in order; those that are separated have a gap. Unknown bodies are present if and only
+ *   if the status is UNKNOWN_BODY. If the status is not OK, there are no answers.
  * - The bodies of a definition have frames, and match their handle. The frames are not checked.
  *
  * No function has shared state. */
