@@ -31,10 +31,10 @@ scene() {
     run --separate-stderr "$FMB" scene "$@"
 }
 
-# shows FILTER: applies a jq filter to the scenes, a line each.
+# shows FILTER [OPTION...]: applies a jq filter to the scenes, a line each.
 shows() {
     ended 0
-    output=$(jq -c "$1" <<< "$output")
+    output=$(jq -c "${@:2}" "$1" <<< "$output")
 }
 
 # refused TEXT ARGUMENTS...: one line, which contains the text, and no scene.
@@ -650,6 +650,294 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     refused "ignore: several bodies have the name 'twice'" robot.urdf --with world.json --ignore base,twice
     refused "ignore: 'arm,arm': a body is no pair with itself" robot.urdf --ignore arm,arm
     wrong scene robot.urdf --ignore arm
+}
+
+@test "worlds are scenes and robots: links of these are obstacles of one group, at home" {
+    cube='"shape": "box", "size": [1,1,1]'
+    echo "{\"dim\": 3, \"duration\": 2, \"margin\": 0.5, \"bodies\": [{\"id\": 9, \"name\": \"x\", $cube, \"group\": 5}]}" > a.json
+    echo "{\"dim\": 3, \"duration\": 1, \"margin\": 0.75, \"bodies\": [{\"id\": 9, \"name\": \"y\", $cube, \"velocity\": [1,0,0]}], \"ignore\": []}" > b.json
+    cp robot.urdf arm.urdf
+    robot "<link name='shelf'>$box</link><link name='door'>$box</link>
+        <joint name='hinge' type='revolute'><origin xyz='0 0 8'/><parent link='shelf'/><child link='door'/><limit lower='0.5' upper='1.5'/></joint>"
+    mv robot.urdf shelf
+    scene arm.urdf --with a.json --with shelf --with b.json
+    says 'pairs tested: 18, ignored: 3: 2 neighbours, 1 within groups'
+    shows '[.duration, .margin, [.bodies[] | [.id, .name, .group]], .ignore, .bodies[5].position, .bodies[5].orientation[0] > 0.87]'
+    is '[2,0.75,[[1,"base",null],[2,"arm",null],[3,"tool",null],[9,"x",5],[10,"shelf",6],[11,"door",6],[12,"y",null]],[[1,2],[2,3]],[0,0,8],true]'
+    # Two of them are of one group, and are not tested against each other.
+    scene arm.urdf --with shelf --with shelf
+    says 'pairs tested: 13, ignored: 8: 2 neighbours, 6 within groups'
+    echo '<robot name="r"><link name="a"/></robot>' > empty.urdf
+    refused 'empty.urdf: no link has a <collision>' arm.urdf --with empty.urdf
+    echo '<robot name="r"><joint name="j" type="floating"><parent link="b"/><child link="a"/></joint></robot>' > bad.urdf
+    scene arm.urdf --with bad.urdf --with none.json
+    ended 2
+    [ "$(wc -l <<< "$stderr")" = 3 ]
+    for text in "bad.urdf: line 1: joint 'j': its type" 'bad.urdf: line 1: <robot> has no <link>' 'none.json: No such file'; do
+        grep -qF "$text" <<< "$stderr"
+    done
+}
+
+@test "a body with a link is carried: its pose is in the link, it is not tested against it, and it comes after the links" {
+    cube='"shape": "box", "size": [1,1,1]'
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, \"name\": \"table\", $cube, \"position\": [9,0,0]},
+        {\"id\": 8, \"name\": \"cup\", $cube, \"position\": [0,0,2], \"orientation\": [1,0,0,1], \"link\": \"tool\"},
+        {\"id\": 9, \"name\": \"pen\", $cube, \"link\": \"tool\"}], \"ignore\": [[\"table\",\"pen\"]]}" > world.json
+    scene robot.urdf --with world.json --joints slide=2 --ignore cup,pen
+    says 'ignored: 6: 2 neighbours, 2 carried, 1 by scenes, 1 by --ignore'
+    shows '[[.bodies[].name], .ignore, .bodies[3].position, .bodies[3].orientation, .bodies[4].position]'
+    is '[["base","arm","tool","cup","pen","table"],[[1,2],[2,3],[3,8],[3,9],[8,9],[9,7]],[0,2,6],[1,0,0,1],[0,2,4]]'
+    printf '%s\n' turn,slide,time 0,0,0 3.1415926535897931,1,1 0,0,2 > t.csv
+    sed -i 's/upper="2"/upper="4"/' robot.urdf
+    scene robot.urdf --with world.json --joints-csv t.csv
+    shows '.bodies[3].position | map(. * 1e6 | round / 1e6)'
+    is $'[0,0,6]\n[0,-1,6]\n[0,0,6]'
+    # A link without a body may carry one.
+    sed -i "s|<link name='tool'>.*</link>|<link name='tool'/>|" robot.urdf
+    scene robot.urdf --with world.json
+    ended 0
+    shows .ignore
+    is '[[1,2],[9,7]]'
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, \"name\": \"a\", $cube, \"link\": \"hand\"}, {\"id\": 8, $cube, \"link\": \"\"},
+        {\"id\": 9, \"name\": \"c\", $cube, \"link\": \"arm\", \"velocity\": [0,0,1]}]}" > bad.json
+    scene robot.urdf --with bad.json
+    ended 2
+    said "fmb: body 7, a: the robot has no link 'hand'
+fmb: body 8: the robot has no link ''
+fmb: body 9, c: a body that a link carries has no velocity of its own"
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, $cube, \"link\": \"arm\"}, {\"id\": 7, $cube, \"link\": \"base\"}]}" > bad.json
+    refused 'bad.json: bodies[1].id: 7 is the id of bodies[0] already' robot.urdf --with bad.json
+    echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, $cube, \"link\": 3}]}" > bad.json
+    refused 'bad.json: bodies[0].link: expected a string' robot.urdf --with bad.json
+    run --separate-stderr "$FMB" query --local world.json
+    ended 2
+    said 'fmb: world.json: bodies[1].link: only a scene that is added to a robot has links'
+}
+
+@test "--base is where the robot stands, as an origin of its root would be" {
+    robot "<link name='world'/><joint name='mount' type='fixed'><origin xyz='1 2 3' rpy='0.1 0.2 0.3'/><parent link='world'/><child link='base'/></joint>
+        $(sed '1,2d;$d' robot.urdf)"
+    scene robot.urdf --joints turn=1,slide=0.5
+    shows .bodies
+    mounted=$output
+    setup
+    scene robot.urdf --joints turn=1,slide=0.5 --base 1,2,3,0.1,0.2,0.3
+    shows .bodies
+    is "$mounted"
+    scene robot.urdf --base=-1,2,1e1
+    shows '[.bodies[] | [.position, .orientation]]'
+    is '[[[-1,2,10],null],[[-1,2,14],null],[[-1,2,14],null]]'
+    refused 'base: expected finite numbers, angles up to 1048576 radians' robot.urdf --base 0,0,0,1e9,0,0
+}
+
+# ---- Ignored pairs -----------------------------------------------------------------------------
+
+# A palm with a sensor that is screwed on, below an empty frame, two fingers, and a body in the world's group -1.
+hand() {
+    robot "<link name='palm'>$box</link><link name='frame'/><link name='sensor'>$box</link><link name='lens'>$box</link>
+        <link name='left'>$box</link><link name='right'>$box</link><link name='tip'>$box</link>
+        $(while read -r name type parent child; do
+            echo "<joint name='$name' type='$type'><parent link='$parent'/><child link='$child'/></joint>"
+        done <<< 'a fixed palm frame
+b fixed frame sensor
+c fixed sensor lens
+d continuous palm left
+e continuous palm right
+f fixed left tip')"
+}
+
+@test "links that fixed joints alone connect are of one group, which no body of the world has" {
+    hand
+    scene robot.urdf
+    says 'pairs tested: 9, ignored: 6: 2 neighbours, 4 joined rigidly'
+    shows '[[.bodies[] | [.name, .group]], .ignore]'
+    is '[[["palm",-1],["sensor",-1],["lens",-1],["left",-2],["right",null],["tip",-2]],[[1,4],[1,5]]]'
+    echo '{"dim": 3, "bodies": [{"id": 7, "shape": "sphere", "radius": 1, "group": -1}]}' > world.json
+    scene robot.urdf --with world.json --verbose
+    grep -qx 'fmb: joined rigidly: palm and lens' <<< "$stderr"
+    shows '[.bodies[] | .group]'
+    is '[-2,-2,-2,-3,null,-3,-1]'
+}
+
+@test "--srdf replaces neighbours and rigid bodies by the pairs that it disables" {
+    hand
+    # srdf ELEMENTS: writes robot.srdf.
+    srdf() {
+        echo "<robot name='r'>$1</robot>" > robot.srdf
+    }
+    # disable A B: an element.
+    disable() { echo "<disable_collisions link1='$1' link2='$2' reason='Adjacent'/>"; }
+    srdf "<group name='g'><link name='palm'/></group><group_state name='s'/><virtual_joint/>
+        $(disable palm left)$(disable lens sensor)$(disable right tip)$(disable tip right)$(disable frame right)"
+    scene robot.urdf --srdf robot.srdf
+    # Of the neighbours palm-sensor, sensor-lens, palm-left, palm-right and left-tip it has two.
+    says 'pairs tested: 12, ignored: 3: 3 by the SRDF; tested neighbours that the SRDF does not list: 3'
+    shows '[.ignore, [.bodies[].group]]'
+    is '[[[1,4],[2,3],[5,6]],[null,null,null,null,null,null]]'
+    # A link that is not tested unless a pair is enabled; disabled pairs come first, and --ignore adds to them.
+    echo '{"dim": 3, "bodies": [{"id": 7, "name": "ball", "shape": "sphere", "radius": 1}, {"id": 8, "name": "cup", "shape": "sphere", "radius": 1, "link": "left"}]}' > world.json
+    srdf "<disable_default_collisions link='right'/><disable_default_collisions link='frame'/>
+        <enable_collisions link1='palm' link2='right'/><enable_collisions link1='tip' link2='right'/>$(disable right tip)"
+    scene robot.urdf --srdf robot.srdf --with world.json --ignore palm,ball
+    says 'ignored: 8: 1 by the SRDF, 5 by its defaults, 1 carried, 1 by --ignore; tested neighbours that the SRDF does not list: 5'
+    shows '.ignore'
+    is '[[1,7],[2,5],[3,5],[4,5],[4,8],[5,6],[5,8],[5,7]]'
+    # Links that the robot has not.
+    srdf "$(disable palm thumb)$(disable thumb wrist)$(disable left palm)<disable_default_collisions link='x&#10;y'/>"
+    scene robot.urdf --srdf robot.srdf
+    says 'links of the SRDF that the robot has not: 3 (thumb, wrist, x\x0ay)'
+    scene robot.urdf --srdf robot.srdf --verbose
+    grep -qx 'fmb: the robot has no link: wrist' <<< "$stderr"
+    srdf "$(for i in 0 1 2 3 4 5 6 7 8; do disable "l$i" palm; done)"
+    scene robot.urdf --srdf robot.srdf
+    says '9 (l0, l1, l2, l3, l4, l5, l6, l7, ...)'
+    # No pair at all is a file as good as others.
+    srdf ''
+    scene robot.urdf --srdf robot.srdf
+    says 'pairs tested: 15, ignored: 0; tested neighbours that the SRDF does not list: 5'
+}
+
+@test "an SRDF file of another robot, of another kind or that is broken is refused" {
+    hand
+    of() {
+        echo "$1" > robot.srdf
+        refused "robot.srdf: $2" robot.urdf --srdf robot.srdf
+    }
+    of "<robot><disable_collisions link1='a' link2='b'/></robot>" 'no link that it names is one of robot.urdf: is it of another robot?'
+    of "<robot><disable_collisions link1='palm'/></robot>" 'line 1: <disable_collisions> has no link2'
+    of "<robot><disable_default_collisions link=''/></robot>" 'line 1: <disable_default_collisions>: link is empty'
+    of "<robot><link name='palm'/></robot>" 'line 1: <link>: this is URDF: --srdf takes a file of SRDF'
+    of '<sdf/>' 'line 1: expected <robot>, found <sdf>: give a file of SRDF'
+    of '<robot>' 'line 2: XML: no element found: the file ends too early'
+    of '<!DOCTYPE robot [<!ENTITY e "palm">]><robot><disable_collisions link1="&e;" link2="left"/></robot>' 'line 1: <!DOCTYPE>: document types and entities are not supported: remove the declaration'
+    refused 'none.srdf: No such file' robot.urdf --srdf none.srdf
+    # With all that is wrong with the robot itself.
+    echo "<robot><disable_collisions link1='palm'/></robot>" > robot.srdf
+    sed -i "s/name='e' type='continuous'/name='e' type='floating'/; s/parent link='left'/parent link='thumb'/" robot.urdf
+    scene robot.urdf --srdf robot.srdf
+    ended 2
+    [ "$(cut -d : -f 2-5 <<< "$stderr")" = " robot.urdf: line 9: joint 'e': its type is 'floating', expected revolute, continuous, prismatic or fixed (in place of planar or floating
+ robot.urdf: line 10: joint 'f': its parent 'thumb' is not a link of the file
+ robot.srdf: line 1: <disable_collisions> has no link2" ]
+}
+
+# ---- Robots as people have them ----------------------------------------------------------------
+
+@test "quat_xyzw of an origin is used as it is" {
+    robot "<link name='a'>$box</link><link name='b'><collision><origin xyz='1 0 0' quat_xyzw='0 0 2 2'/><geometry><box size='1 1 1'/></geometry></collision></link>
+        <joint name='j' type='fixed'><origin xyz='0 0 1' quat_xyzw='0.5 0 0 0.5'/><parent link='a'/><child link='b'/></joint>"
+    scene robot.urdf
+    shows '.bodies[1] | [.position, .orientation]'
+    is '[[1,0,1],[1,1,-1,1]]'
+    # However long.
+    for q in '1 2 3 4' '1e100 2e100 3e100 4e100' '1e-100 2e-100 3e-100 4e-100' '1e-300 2e-300 3e-300 4e-300'; do
+        link "<collision><origin quat_xyzw='$q'/><geometry><box size='1 1 1'/></geometry></collision>"
+        scene robot.urdf
+        shows '.bodies[0].orientation | map(. / $o[1] * 1e9 | round / 1e9)' --argjson o "$(jq -c '.bodies[0].orientation' <<< "$output")"
+        is '[4,1,2,3]'
+    done
+    # Many of them neither overflow nor underflow.
+    chain="<link name='l0'>$box</link>"
+    for ((i = 1; i < 600; i++)); do
+        chain+="<link name='l$i'>$box</link><joint name='j$i' type='fixed'><origin quat_xyzw='$([ $((i % 2)) = 1 ] && echo 3e9 4e9 0 0 || echo -3e-3 -4e-3 0 0)'/><parent link='l$((i - 1))'/><child link='l$i'/></joint>"
+    done
+    robot "$chain"
+    scene robot.urdf
+    ended 0
+    shows '.bodies[598] | .position, (.orientation | .[0] as $w | map(. / $w | fabs < 1e-12))'
+    is $'null\n[false,true,true,true]'
+}
+
+@test "columns of fixed joints and of none are ignored and counted; one of a mimic joint wins, with the largest difference" {
+    sed -i "s|child link='tool'/>|&<mimic joint='turn' multiplier='2'/>|; s|</robot>|<link name='end'/><joint name='weld' type='fixed'><parent link='tool'/><child link='end'/></joint></robot>|" robot.urdf
+    printf '%s\n' 'weld,time,turn,slide,effort,mode' 'x,0,0.25,0.5,NaN,a' ',1,0.5,1.25,,b' '0,2,0.5,0.875,1,c' > t.csv
+    scene robot.urdf --joints-csv t.csv
+    says "fmb: t.csv: rows: 3, largest step 0.75 of 'slide' to line 3; ignored: columns of fixed joints: 1; ignored: columns of no joint: 2 ('effort'); mimic 'slide' differs from what it follows by up to 0.25 (line 3)"
+    shows '.bodies[2].position | .[0] * .[0] + .[1] * .[1] | . * 1e9 | round / 1e9'
+    is $'0.25\n1.5625\n0.765625'
+    scene robot.urdf --joints turn=0.5,slide=1.125
+    says "fmb: joints: mimic 'slide' differs from what it follows by up to 0.125"
+}
+
+@test "a package is the nearest folder above the robot that has its name, or whose package.xml has" {
+    mkdir -p ws/arm/robots ws/arm/arm/meshes ws/arm/meshes other/meshes
+    printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' > ws/arm/meshes/m.obj
+    echo 'f 1 2 3' >> ws/arm/meshes/m.obj
+    sed 's/v 1/v 2/' ws/arm/meshes/m.obj > other/meshes/m.obj
+    link "<collision><geometry><mesh filename='package://arm/meshes/m.obj'/></geometry></collision>"
+    mv robot.urdf ws/arm/robots
+    width='.bodies[0].vertices | map(.[0]) | max'
+    scene ws/arm/robots/robot.urdf
+    shows "$width"
+    is 1
+    cd ws/arm/robots
+    scene - < robot.urdf
+    shows "$width"
+    is 1
+    cd ../../..
+    # By the name in package.xml, not that of a comment or of another package; the nearest one.
+    mv ws/arm ws/src
+    refused 'package://arm/meshes/m.obj: not found: no folder above the robot is called arm, or has a package.xml with this name' ws/src/robots/robot.urdf
+    for xml in '<package><!-- <name>no</name> --><name> arm </name></package>' $'<package format="2">\n<name>arm</name>'; do
+        echo "$xml" > ws/src/package.xml
+        scene ws/src/robots/robot.urdf
+        shows "$width"
+        is 1
+    done
+    for xml in '<package><!-- <name>arm</name> --><name>no</name></package>' '<name>arms</name>' '<name>ar</name>' '<name>' '<!--' ''; do
+        echo "$xml" > ws/src/package.xml
+        refused 'package://arm/meshes/m.obj: not found' ws/src/robots/robot.urdf
+    done
+    # Folders of --package-path come first.
+    ln -s ../other ws/arm
+    echo '<name>arm</name>' > ws/src/package.xml
+    scene ws/src/robots/robot.urdf --package-path ws
+    shows "$width"
+    is 2
+    scene ws/src/robots/robot.urdf --package-path /nowhere
+    shows "$width"
+    is 1
+}
+
+@test "all that is refused of a robot is named at once, at most 100 errors" {
+    robot "<link name='a'>$box<collision><geometry><cone/></geometry></collision><collision/>
+<collision><geometry><mesh filename='none.stl'/></geometry></collision></link>
+<link name='a'/><link/>
+<link name='b'><collision><origin xyz='1 2'/><geometry><box size='-1 1 1'/></geometry></collision></link>
+<joint name='j' type='planar'><parent link='a'/><child link='b'/></joint>
+<joint name='k' type='revolute'><parent link='b'/><child link='c'/><limit lower='nan' upper='1'/></joint>
+<joint name='l' type='fixed'><parent link='a'/><child link='z'/></joint>"
+    scene robot.urdf
+    ended 2
+    is ''
+    [ "$(grep -o 'line [0-9]*: .*' <<< "$stderr" | cut -c 1-32)" = "line 3: link 'a': <cone>: expect
+line 3: link 'a': <collision> ha
+line 5: there is already a link 
+line 5: <link> has no name
+line 6: link 'b': <origin>: xyz 
+line 7: joint 'j': its type is '
+line 8: joint 'k': <limit>: lowe
+line 8: joint 'k': its child 'c'
+line 9: joint 'l': its child 'z'
+line 4: link 'a': none.stl: No s" ]
+    robot "$(for ((i = 0; i < 250; i++)); do echo "<link name='l$i'><collision/></link>"; done)"
+    scene robot.urdf
+    ended 2
+    [ "$(wc -l <<< "$stderr")" = 101 ]
+    [[ $stderr == *$'\nfmb: robot.urdf: and 150 more errors' ]]
+}
+
+@test "a robot without joints, or with joints and bodies in one link only, is a scene" {
+    link "$box"
+    scene robot.urdf
+    ended 0
+    said 'fmb: robot.urdf: links: 1, with a body: 1; size: 1 x 2 x 3
+fmb: pairs tested: 0, ignored: 0'
+    echo time > t.csv
+    echo 1 >> t.csv
+    scene robot.urdf --joints-csv t.csv
+    says 'fmb: t.csv: rows: 1'
+    ended 0
 }
 
 # ---- Bad robots ------------------------------------------------------------------------------
