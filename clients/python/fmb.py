@@ -11,8 +11,8 @@ box, and how far apart they are. Decided in process, or by the service fmbd on a
         print(answer.names, answer.verdict)    # ('table', 'cube') touching
 
 Bodies are made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule(), cylinder() and
-compound(), and queried by the methods of Scene. "pydoc3 fmb.hull" or "pydoc3 fmb.Scene" describes one
-of them.
+compound(), and queried by the methods of Scene. Robot poses robots of URDF. "pydoc3 fmb.hull" or
+"pydoc3 fmb.Scene" describes one of them.
 
 fmb.h of libfmb defines shapes, verdicts, and the accuracy of numbers. Lengths may have any unit;
 times are in seconds, velocities per second; orientations are quaternions (w, x, y, z), in 2D (w, z),
@@ -54,28 +54,32 @@ if TYPE_CHECKING:
     Array = Union["numpy.ndarray", memoryview, Sequence[Any]]
 
 __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPPING", "SEPARATED",
-           "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "cylinder", "face",
+           "Robot", "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "cylinder", "face",
            "hull", "sphere", "status_text", "tetrahedron", "version"]
 
 # ---- The library: fmb_flat.h ----
 
 _ABI = 2
 _SONAME = "libfmb-client.so.0"
+_ROBOT_ABI = 1
+_ROBOT_SONAME = "libfmb-robot.so.0"
 _WHY_MAX = 512
 
 
-def _load() -> ctypes.CDLL:
+def _open(soname: str, abi: str, expected: int) -> ctypes.CDLL:
     try:
-        library = ctypes.CDLL(_SONAME)
+        library = ctypes.CDLL(soname)
     except OSError as error:
         raise ImportError(f"fmb: {error}: install it, or add its folder to LD_LIBRARY_PATH") from None
-    try:
-        found = library.fmb_flat_abi()
-    except AttributeError:
-        found = 0
-    if found != _ABI:
-        raise ImportError(f"fmb: {_SONAME} has interface {found}, fmb.py needs {_ABI}: install both "
+    found = getattr(library, abi, int)()
+    if found != expected:
+        raise ImportError(f"fmb: {soname} has interface {found}, fmb.py needs {expected}: install both "
                           "from one version")
+    return library
+
+
+def _load() -> ctypes.CDLL:
+    library = _open(_SONAME, "fmb_flat_abi", _ABI)
     integer, size, long, real, text, pointer = (
         ctypes.c_int, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p,
         ctypes.c_void_p)
@@ -92,6 +96,9 @@ def _load() -> ctypes.CDLL:
             ("fmb_flat_scene_make", integer, (size,) + 5 * (pointer,)),
             ("fmb_flat_scene_free", None, (pointer,)),
             ("fmb_flat_scene_forked", None, (pointer,)),
+            ("fmb_flat_scene_ignore", integer, (pointer, pointer, size)),
+            ("fmb_flat_placements", pointer, (pointer,)),
+            ("fmb_flat_take", None, (pointer, pointer, size)),
             ("fmb_flat_why", text, (pointer,)),
             ("fmb_flat_place", integer, (pointer, size, size, pointer, pointer, pointer)),
             ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer)),
@@ -99,9 +106,38 @@ def _load() -> ctypes.CDLL:
                                           pointer, size, pointer, size, text)),
             ("fmb_flat_count", size, (pointer,)),
             ("fmb_flat_answers", None, 12 * (pointer,))):
-        function = getattr(held if name == "fmb_flat_place" else library, name)
+        function = getattr(held if name in ("fmb_flat_place", "fmb_flat_take") else library, name)
         function.restype, function.argtypes = result, arguments
         setattr(library, name, function)
+    return library
+
+
+@functools.lru_cache(maxsize=None)
+def _robots() -> ctypes.CDLL:
+    """The library for robots: fmb_robot_flat.h. It is loaded when it is needed."""
+    library = _open(_ROBOT_SONAME, "fmb_robot_flat_abi", _ROBOT_ABI)
+    integer, size, real, text, pointer = (
+        ctypes.c_int, ctypes.c_size_t, ctypes.c_double, ctypes.c_char_p, ctypes.c_void_p)
+    for name, result, arguments in (
+            ("fmb_robot_flat_read", integer, 3 * (text,) + (pointer, integer, real, integer, pointer)),
+            ("fmb_robot_free", None, (pointer,)),
+            ("fmb_robot_why", text, (pointer,)),
+            ("fmb_robot_joints", size, (pointer, pointer)),
+            ("fmb_robot_links", size, (pointer, pointer)),
+            ("fmb_robot_limits", None, 3 * (pointer,)),
+            ("fmb_robot_home", None, 2 * (pointer,)),
+            ("fmb_robot_excess", real, (pointer,)),
+            ("fmb_robot_flat_json", integer, (text, pointer)),
+            ("fmb_robot_flat_make", integer, (pointer, pointer, pointer, size, real, pointer, size,
+                                              pointer, size, pointer)),
+            ("fmb_robot_flat_free", None, (pointer,)),
+            ("fmb_robot_flat_why", text, (pointer,)),
+            ("fmb_robot_flat_counts", None, 3 * (pointer,)),
+            ("fmb_robot_flat_copy", None, 11 * (pointer,)),
+            ("fmb_robot_flat_placements", pointer, (pointer,)),
+            ("fmb_robot_flat_place", integer, 2 * (pointer,))):
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
     return library
 
 
@@ -736,6 +772,7 @@ class Scene(_Handle):
     groups: (n,) int64; bodies of one group other than 0 are not tested against each other
     ids: (n,) int64, 1 to 2^53 - 1, under which the service caches the bodies; 0: it does not;
         None: 1 to n
+    ignored: (m, 2) int64, pairs of bodies that decide() does not test, unless it gets a list of pairs
     """
 
     _free = _lib.fmb_flat_scene_free
@@ -743,7 +780,7 @@ class Scene(_Handle):
     def __init__(self, bodies: Iterable[Body], *, positions: Optional[Array] = None,
                  orientations: Optional[Array] = None, velocities: Optional[Array] = None,
                  names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
-                 ids: Optional[Array] = None) -> None:
+                 ids: Optional[Array] = None, ignored: Optional[Array] = None) -> None:
         self._lock = threading.Lock()
         _shared.add(self)
         self.bodies = _bodies(bodies)
@@ -764,9 +801,26 @@ class Scene(_Handle):
             _pointer(_flat("ids", range(1, n + 1) if ids is None else ids, "q", (n,))[0]),
             _pointer(_flat("groups", [0] * n if groups is None else groups, "q", (n,))[0]),
             (ctypes.c_char_p * n)(*texts), ctypes.byref(handle))
+        pairs = _flat("ignored", [] if ignored is None else ignored, "q", ("m", 2))[0]
+        self.ignored: Any = (_rows(pairs) if len(pairs) else []) if numpy is None else numpy.array(pairs).reshape(-1, 2)
+        self.links: tuple[Optional[str], ...] = (None,) * n
+        self.duration, self.margin = None, 0.0
+        self._robot: Any = None
         self._handle = handle.value
         self._check(status)
+        self._check(_lib.fmb_flat_scene_ignore(self._handle, _pointer(pairs), len(pairs)))
         self.place(positions, orientations, velocities)
+
+    @staticmethod
+    def from_json(path: Union[str, os.PathLike]) -> Scene:
+        """Reads the only scene of a JSON file, with its ignored pairs. It may be one around a robot: links
+        has the name of the link that carries a body, or None. duration and margin are those of the file;
+        they are not used by decide(), but the margin is that of a robot's scene.
+
+        Raises ValueError for a file that is refused.
+        """
+        flat = _FlatScene("fmb_robot_flat_json", _path("path", path))
+        return flat.scene(flat.bodies(), duration=flat._settings[0], margin=flat._settings[1])
 
     def _in_child(self, was_used: bool) -> None:
         if was_used:
@@ -841,7 +895,7 @@ class Scene(_Handle):
             those that touch, overlap, are near or have no verdict get an answer, and all others
             are separated
         split: only pairs of one of the first split bodies with one of the others
-        ignored: (m, 2) int64, pairs that are not tested; not with pairs
+        ignored: (m, 2) int64, pairs that are not tested, besides those of the scene; not with pairs
         margin: separated pairs at most this far apart are near; they have gaps, as do pairs that meet
         instant: the window is [0, 0] even if bodies move; duration is 0
         contacts, boxes, points, gaps: also wanted, besides verdicts
@@ -890,3 +944,164 @@ class Scene(_Handle):
                     raise ValueError(f"{name}: fewer scenes than the others")
             self.place(**dict(zip(given, poses)))
             yield self.decide(duration, **options)
+
+
+# ---- Robots ----
+
+
+def _path(name: str, value: Any) -> Optional[bytes]:
+    try:
+        return None if value is None else os.fsencode(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected a path, found {value!r:.40}") from None
+
+
+class _FlatScene(_Handle):
+    """A scene of libfmb-robot, made by a function of these arguments."""
+
+    def __init__(self, make: str, *arguments: Any) -> None:
+        self._lib = lib = _robots()
+        self._free = lib.fmb_robot_flat_free
+        handle = ctypes.c_void_p()
+        status = getattr(lib, make)(*arguments, ctypes.byref(handle))
+        self._handle = handle.value
+        if status:
+            raise Error(lib.fmb_robot_flat_why(handle).decode(errors="replace"))
+        counts, self._settings = (ctypes.c_int64 * 6)(), (ctypes.c_double * 2)()
+        lib.fmb_robot_flat_counts(handle, counts, self._settings)
+        self._dim, self._count, self._frames, self._numbers, self._ignored, self._moved = counts
+
+    def bodies(self) -> list[Body]:
+        frames, shapes, counts = (ctypes.c_int64 * self._count)(), (ctypes.c_int32 * self._frames)(), (
+            ctypes.c_int64 * self._frames)()
+        numbers = array("d", bytes(8 * self._numbers))
+        self._lib.fmb_robot_flat_copy(self._handle, frames, shapes, counts, _pointer(numbers), *6 * (None,))
+        ends = list(itertools.accumulate(counts, initial=0))
+        each = [(shapes[k], numbers[ends[k]:ends[k + 1]]) for k in range(self._frames)]
+        last = list(itertools.accumulate(frames, initial=0))
+        return [Body("body", self._dim, each[last[i]:last[i + 1]]) for i in range(self._count)]
+
+    def scene(self, bodies: Sequence[Body], **more: Any) -> Scene:
+        """A Scene of these bodies. more: attributes."""
+        n = self._count
+        ids, groups, ignored = (array("q", bytes(8 * k)) for k in (n, n, 2 * self._ignored))
+        names, links = (ctypes.c_char_p * n)(), (ctypes.c_char_p * n)()
+        velocities = array("d", bytes(8 * n * self._dim))
+        self._lib.fmb_robot_flat_copy(self._handle, *4 * (None,), _pointer(ids), _pointer(groups), names, links,
+                                      _pointer(velocities), _pointer(ignored))
+
+        def texts(column: Any) -> tuple[Optional[str], ...]:
+            return tuple(text if text is None else text.decode() for text in column)
+
+        scene = Scene(bodies, ids=ids, groups=groups, names=texts(names),
+                      velocities=memoryview(velocities).cast("B").cast("d", (n, self._dim)),
+                      ignored=memoryview(ignored).cast("B").cast("q", (self._ignored, 2)) if ignored else None)
+        scene.__dict__.update(links=texts(links), **more)
+        _lib.fmb_flat_take(scene._handle, self._lib.fmb_robot_flat_placements(self._handle), n)
+        return scene
+
+
+class Robot(_Handle):
+    """A robot of a URDF file, with a body for each link that has collision elements.
+
+    path: of the file; "-" is standard input
+    srdf: path of an SRDF file, whose pairs are ignored in place of neighbours and rigid bodies
+    package_path: folders of packages, separated by colons
+    ignore: pairs of names, of links or of bodies of the world, that are not tested
+    base: where the root is: x, y, z, or x, y, z, roll, pitch, yaw
+    sides: of the hulls of cylinders, a multiple of 4 up to 512
+    excess: how far hulls may extend beyond meshes, so that they have fewer vertices
+    objects: a hull for each object of an OBJ file
+
+    joints: names of the joints that move and follow no other, in the order of q
+    lower, upper, home: (len(joints),), of q: limits, infinite if there are none; and 0, or the middle of
+        the limits if 0 is outside. Radians, or lengths of prismatic joints
+    links: names of the links that have a body, in the order of a scene
+    excess: how far bodies extend beyond the cylinders and meshes of the file at most
+
+    Raises Error with all that is wrong with the files, a line each; ImportError without libfmb-robot.
+    """
+
+    def __init__(self, path: Union[str, os.PathLike], srdf: Union[str, os.PathLike, None] = None,
+                 package_path: Optional[str] = None, ignore: Iterable[Sequence[str]] = (),
+                 base: Optional[Array] = None, *, sides: int = 16, excess: float = 0,
+                 objects: bool = False) -> None:
+        self._lib = lib = _robots()
+        self._free = lib.fmb_robot_free
+        place, (found,) = _flat("base", [0] * 6 if base is None else base, "d", ("6",))
+        if found not in (3, 6):
+            raise ValueError(f"base: expected x, y, z, or x, y, z, roll, pitch, yaw, found {found} numbers")
+        place = array("d", place.tolist() + [0] * (6 - found))
+        self._ignore = [tuple(_iterate(f"ignore[{i}]", pair)) for i, pair in enumerate(_iterate("ignore", ignore))]
+        for i, pair in enumerate(self._ignore):
+            if len(pair) != 2 or not all(isinstance(name, str) for name in pair):
+                raise ValueError(f"ignore[{i}]: expected two names, found {pair!r:.40}")
+        handle = ctypes.c_void_p()
+        if path is None:
+            raise TypeError("path: expected a path, found None")
+        sides, excess = _int("sides", sides), _float("excess", excess)
+        if not 0 < sides < 2**31:
+            raise ValueError(f"sides: {sides} is out of range")
+        status = lib.fmb_robot_flat_read(
+            _path("path", path), _path("srdf", srdf), _path("package_path", package_path), _pointer(place), sides,
+            excess, bool(objects), ctypes.byref(handle))
+        if status:
+            why = lib.fmb_robot_why(handle).decode(errors="replace")
+            lib.fmb_robot_free(handle)
+            raise Error(why)
+
+        def names(function: Any) -> tuple[str, ...]:
+            found = ctypes.POINTER(ctypes.c_char_p)()
+            return tuple(found[i].decode() for i in range(function(handle, ctypes.byref(found))))
+
+        self.joints, self.links = names(lib.fmb_robot_joints), names(lib.fmb_robot_links)
+        values = [array("d", bytes(8 * len(self.joints))) for _ in range(3)]
+        lib.fmb_robot_limits(handle, *map(_pointer, values[:2]))
+        lib.fmb_robot_home(handle, _pointer(values[2]))
+        self.lower, self.upper, self.home = (
+            memoryview(value) if numpy is None else numpy.array(value) for value in values)
+        self.excess = lib.fmb_robot_excess(handle)
+        self._base = place
+        self._handle = handle.value
+        self._bodies = self._make(None, []).bodies()
+
+    def _make(self, world: Optional[Scene], ignore: Sequence[Any]) -> _FlatScene:
+        n = len(world) if world else 0
+        pairs = _flat("ignored", world.ignored if world else [], "q", ("m", 2))[0]
+        names = [_text("ignore", name) for pair in ignore for name in pair]
+        return _FlatScene("fmb_robot_flat_make", self._handle, world and _lib.fmb_flat_placements(world._handle),
+                          (ctypes.c_char_p * n)(*(_text("links", link) for link in world.links) if world else ()),
+                          n, world.margin if world else 0.0, _pointer(pairs), len(pairs),
+                          (ctypes.c_char_p * len(names))(*names), len(ignore))
+
+    def scene(self, world: Optional[Scene] = None) -> Scene:
+        """A scene of the robot at home: first the bodies of the links, in the order of links; then those
+        of the world that links carry; then the others. Its ignored pairs are those of the robot and of the
+        world. Links have the ids from 1 on; bodies of the world with one of these get others. Parts of one
+        rigid body have a group.
+
+        world: a Scene in 3D, as it is now; of a JSON file with links, see Scene.from_json()
+        """
+        if world is not None and not isinstance(world, Scene):
+            raise TypeError(f"world: expected a Scene, found {world!r:.40}")
+        flat = self._make(world, self._ignore)
+        order = sorted(range(len(world)), key=lambda i: world.links[i] is None) if world else []
+        return flat.scene(self._bodies + [world.bodies[i] for i in order], margin=flat._settings[1],
+                          duration=world.duration if world else None,
+                          _robot=(self, flat, (ctypes.c_double * len(self.joints))()))
+
+    def place(self, scene: Scene, q: Array) -> None:
+        """Poses the links and what they carry; all else in the scene stays where it is.
+
+        scene: of scene()
+        q: (len(joints),), finite values of the joints; limits are not checked
+        """
+        robot, flat, values = getattr(scene, "_robot", None) or 3 * (None,)
+        if robot is not self:
+            raise ValueError("scene: expected a scene of this robot: scene() makes one")
+        view, _ = _flat("q", q, "d", (len(self.joints),))
+        with scene._lock:
+            values[:] = view.tolist()
+            if self._lib.fmb_robot_flat_place(flat._handle, values):
+                raise Error("q: " + self._lib.fmb_robot_flat_why(flat._handle).decode(errors="replace"))
+            _lib.fmb_flat_take(scene._handle, self._lib.fmb_robot_flat_placements(flat._handle), flat._moved)

@@ -108,7 +108,14 @@ struct fmb_flat_scene {
     char *names;
     struct fmb_prepared *prepared;
     struct column listed, ignored; /* unsigned [][2]: indices of placements */
-    struct column memory;          /* bytes: of a struct fmb_scene_state */
+    struct column own;             /* the same: pairs that are always ignored */
+    size_t own_count;
+    struct column memory; /* bytes: of a struct fmb_scene_state */
+    /* The scene that was decided in memory, if it can be begun again; and how many of the first
+     * placements have moved since. */
+    struct fmb_scene_state *state;
+    struct fmb_scene begun;
+    size_t moved;
     struct column column[COLUMN_COUNT];
     bool has[COLUMN_COUNT]; /* the last answers have this column */
     size_t count;           /* of the last answers */
@@ -198,6 +205,7 @@ void fmb_flat_scene_free(struct fmb_flat_scene *scene)
     free(scene->names);
     free(scene->listed.data);
     free(scene->ignored.data);
+    free(scene->own.data);
     free(scene->memory.data);
     for (int c = 0; c < COLUMN_COUNT; c++)
         free(scene->column[c].data);
@@ -207,6 +215,7 @@ void fmb_flat_scene_free(struct fmb_flat_scene *scene)
 void fmb_flat_scene_forked(struct fmb_flat_scene *scene)
 {
     scene->listed = scene->ignored = scene->memory = (struct column){0};
+    scene->state = NULL;
     memset(scene->column, 0, sizeof scene->column);
     scene->count = 0;
 }
@@ -239,6 +248,11 @@ static bool is_finite(const double *vector)
     return isfinite(vector[0]) && isfinite(vector[1]) && isfinite(vector[2]);
 }
 
+static void set_moved(struct fmb_flat_scene *scene, size_t end)
+{
+    scene->moved = end > scene->moved ? end : scene->moved;
+}
+
 int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
                    const double *positions, const double *orientations, const double *velocities)
 {
@@ -258,7 +272,25 @@ int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
     for (size_t i = 0; i < count; i++)
         scene->placements[first + i] =
             with_row(scene, first + i, i, positions, orientations, velocities);
+    set_moved(scene, first + count);
     return FMB_OK;
+}
+
+const void *fmb_flat_placements(const struct fmb_flat_scene *scene)
+{
+    return scene->placements;
+}
+
+void fmb_flat_take(struct fmb_flat_scene *scene, const void *placements, size_t count)
+{
+    const struct fmb_placement *from = placements;
+    for (size_t i = 0; i < count && i < scene->placement_count; i++) {
+        struct fmb_placement *to = &scene->placements[i];
+        memcpy(to->position, from[i].position, sizeof to->position);
+        memcpy(to->orientation, from[i].orientation, sizeof to->orientation);
+        to->orientation_count = from[i].orientation_count;
+    }
+    set_moved(scene, count);
 }
 
 /* ---- Deciding ---- */
@@ -279,6 +311,13 @@ static int convert(struct fmb_flat_scene *scene, struct column *column, const ch
         out[i] = (unsigned) pairs[i];
     }
     return FMB_OK;
+}
+
+int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, size_t count)
+{
+    const int status = convert(scene, &scene->own, "ignored", pairs, count);
+    scene->own_count = status == FMB_OK ? count : 0;
+    return status;
 }
 
 static bool reserve_answers(struct fmb_flat_scene *scene, size_t count)
@@ -315,15 +354,40 @@ static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *sce
                                                       .gaps = column_if(flat, GAPS)});
 }
 
-static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
+/* Whether the scene was decided last, and differs in no more than poses. */
+static bool is_again(const struct fmb_flat_scene *flat, const struct fmb_scene *scene)
+{
+    const struct fmb_scene *begun = &flat->begun;
+    return flat->state && flat->moved < flat->placement_count &&
+           begun->duration == scene->duration && begun->instant == scene->instant &&
+           begun->want == scene->want && begun->margin == scene->margin &&
+           begun->which == scene->which && begun->split == scene->split &&
+           scene->which != FMB_PAIRS_LISTED && begun->ignored == scene->ignored &&
+           begun->ignored_count == scene->ignored_count;
+}
+
+/* Begins a scene, or the last one again. */
+static enum fmb_status begin(struct fmb_flat_scene *flat, const struct fmb_scene *scene,
+                             struct fmb_scene_state **out)
 {
     struct fmb_scene_limits limits;
+    if (is_again(flat, scene)) {
+        *out = flat->state;
+        return fmb_scene_again(flat->state, flat->moved);
+    }
+    flat->state = NULL;
     fmb_scene_limits_of(scene, &limits);
+    if (!reserve(&flat->memory, fmb_scene_bytes(&limits), 1))
+        return (enum fmb_status) FMB_CLIENT_NO_MEMORY;
+    return fmb_scene_begin(scene, &limits, flat->memory.data, out);
+}
+
+static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
+{
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
-    if (!reserve(&flat->memory, fmb_scene_bytes(&limits), 1))
-        return FMB_CLIENT_NO_MEMORY;
-    const enum fmb_status status = fmb_scene_begin(scene, &limits, flat->memory.data, &state);
+    const int status = (int) begin(flat, scene, &state);
+    flat->state = NULL;
     for (bool done = status != FMB_OK; !done;) {
         done = fmb_scene_step(state, &answers);
         if (!reserve_answers(flat, flat->count + answers.count)) {
@@ -339,7 +403,12 @@ static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *sce
                        answers.count * column_width[c]);
         flat->count += answers.count;
     }
-    return (int) status;
+    if (status == FMB_OK && scene->ignored == flat->own.data) {
+        flat->state = state;
+        flat->begun = *scene;
+        flat->moved = 0;
+    }
+    return status;
 }
 
 /* An fmb_client_sink. If memory runs out, this answer and all later ones are dropped. */
@@ -410,6 +479,19 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
     return scene->failed ? refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0) : answer.status;
 }
 
+/* Sets the ignored pairs to the scene's own, and more. */
+static int convert_ignored(struct fmb_flat_scene *flat, size_t own, const int64_t *pairs,
+                           size_t count)
+{
+    int status = convert(flat, &flat->ignored, "ignored", pairs, count);
+    if (status == FMB_OK && !reserve(&flat->ignored, own + count, sizeof(unsigned[2])))
+        status = refuse(flat, FMB_CLIENT_NO_MEMORY, NULL, 0);
+    if (status == FMB_OK && own > 0)
+        memcpy((unsigned(*)[2]) flat->ignored.data + count, flat->own.data,
+               own * sizeof(unsigned[2]));
+    return status;
+}
+
 static int decide_on_bus(struct fmb_flat_scene *flat, struct fmb_client *client,
                          const struct fmb_scene *scene)
 {
@@ -430,8 +512,9 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
         return FMB_BAD_NAME;
     }
     int status = convert(flat, &flat->listed, "pairs", pairs, pairs ? pair_count : 0);
-    if (status == FMB_OK)
-        status = convert(flat, &flat->ignored, "ignored", ignored, ignored ? ignored_count : 0);
+    const size_t own = pairs ? 0 : flat->own_count, more = ignored ? ignored_count : 0;
+    if (status == FMB_OK && more > 0)
+        status = convert_ignored(flat, own, ignored, more);
     if (status != FMB_OK)
         return status;
     const struct fmb_scene scene = {.placements = flat->placements,
@@ -446,8 +529,8 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                                     .split = !pairs && split >= 0 ? (size_t) split : 0,
                                     .pairs = flat->listed.data,
                                     .pair_count = pairs ? pair_count : 0,
-                                    .ignored = flat->ignored.data,
-                                    .ignored_count = ignored ? ignored_count : 0,
+                                    .ignored = more > 0 ? flat->ignored.data : flat->own.data,
+                                    .ignored_count = own + more,
                                     .label = label};
     if (client)
         return decide_on_bus(flat, client, &scene);

@@ -65,9 +65,22 @@ int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const
                         struct fmb_flat_scene **out);
 void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
 
+/* Sets the pairs of a scene that fmb_flat_decide() ignores whenever it decides no list; called
+ * once.
+ * In:  pairs  [count][2]
+ * Returns FMB_OK, FMB_BAD_PAIR or NO_MEMORY. */
+int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, size_t count);
+
+/* Returns the placements, an array of struct fmb_placement. */
+const void *fmb_flat_placements(const struct fmb_flat_scene *scene);
+
+/* Copies the poses of the first count elements of such an array, of valid poses, to those of the
+ * scene. */
+void fmb_flat_take(struct fmb_flat_scene *scene, const void *placements, size_t count);
+
 /* In a child process after a fork during which another thread was using the scene: makes the scene
- * usable, without answers. If the thread was in fmb_flat_place(), the poses of those placements
- * have to be set again. Memory that the thread was using is not freed. */
+ * usable, without answers. If the thread was in fmb_flat_place() or fmb_flat_take(), the poses of
+ * those placements have to be set again. Memory that the thread was using is not freed. */
 void fmb_flat_scene_forked(struct fmb_flat_scene *scene);
 
 /* Returns what was wrong in the last call that failed: "positions[3]: not a finite number". */
@@ -91,13 +104,15 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
                   double duration, unsigned want);
 
 /* Decides pairs, and keeps the answers in the scene until the next call: of each pair of a list;
- * otherwise of those that touch, overlap, are near, or have no verdict.
+ * otherwise of those that touch, overlap, are near, or have no verdict. In process, if only the
+ * first placements have moved since the last call and all else is equal, what the others need is
+ * kept (fmb_scene_again()).
  * In:  client   NULL: in process; or as fmb_client_query()
  *      instant  not 0: the window is [0, 0] even if bodies move
  *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX, FMB_WANT_POINT and FMB_WANT_GAP
  *      split    pairs of the first split placements with the others; negative: all pairs
  *      pairs    [pair_count][2], a list, with which split is not read; NULL: no list
- *      ignored  [ignored_count][2]; none with a list
+ *      ignored  [ignored_count][2], besides those of the scene; none with a list
  *      label    of the scene, or NULL
  * Returns a status of fmb_scene_check() or fmb_client_query(); FMB_BAD_NAME (of the label); or
  * NO_MEMORY. */

@@ -9,7 +9,6 @@
  *         fail(fmb_robot_scene_why(scene));
  *     fmb_robot_place(scene, q);
  *     fmb_scene_begin(fmb_robot_scene_get(scene), ...);
- *     fmb_scene_free(...);
  *
  * Link with pkg-config's fmb-robot: libfmb, Expat and cJSON; no LCM. clients/robot/README.md says
  * which parts of URDF and SRDF are read, and what becomes of them.
@@ -20,8 +19,8 @@
  * Threads: a robot is only read after fmb_robot_read(), so threads may share it. A scene may be
  * used by one thread at a time.
  *
- * The library prints nothing. What is wrong with the input is returned as text. The process ends
- * with status 1 if memory is exhausted. */
+ * The library prints nothing. What is wrong with the input is returned as text. If memory is
+ * exhausted, it prints that, and the process ends with status 1. */
 #ifndef FMB_ROBOT_H
 #define FMB_ROBOT_H
 
@@ -99,9 +98,11 @@ struct fmb_robot_world {
 /* Makes a scene: first the bodies of links, as placements 0 to number - 1 with ids from 1 on and
  * the names of the links; then carried bodies; then the others, each in the order of the worlds.
  * Bodies whose ids are taken get others. Parts of one rigid body are of one group. duration and
- * margin are the largest of the worlds. The robot is at home. In:  worlds  [world_count] ignore
- * [ignore_count][2], names of links or bodies: pairs that are not tested Out: *out    set in any
- * case, for fmb_robot_scene_why(); to be freed Returns 0; or -1 after errors. */
+ * margin are the largest of the worlds. The robot is at home.
+ * In:  worlds  [world_count]
+ *      ignore  [ignore_count][2], names of links or bodies: pairs that are not tested
+ * Out: *out    set in any case, for fmb_robot_scene_why(); to be freed
+ * Returns 0; or -1 after errors. */
 int fmb_robot_scene(const struct fmb_robot *robot, const struct fmb_robot_world *worlds,
                     size_t world_count, const char *const (*ignore)[2], size_t ignore_count,
                     struct fmb_robot_scene **out);

@@ -12,6 +12,7 @@ import os
 import random
 import signal
 import subprocess
+import tempfile
 import threading
 import time
 import unittest
@@ -719,6 +720,195 @@ class Arrays(unittest.TestCase):
             thread.join()
         self.assertEqual(wrong, [])
 
+
+
+DEMO = "clients/demo/robot/"
+
+
+class Robots(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        box = "<collision><geometry><box size='1 1 1'/></geometry></collision>"
+        self.urdf = self.file("r.urdf", f"""<robot name="r"><link name="base">{box}</link>
+            <link name="plate">{box}</link><link name="arm">{box}</link><link name="tool">{box}</link><link name="tip"/>
+            <joint name="weld" type="fixed"><parent link="base"/><child link="plate"/></joint>
+            <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+            <joint name="slide" type="prismatic"><origin xyz="0 0 4"/><parent link="arm"/><child link="tool"/>
+            <axis xyz="0 1 0"/><limit lower="1" upper="3"/></joint>
+            <joint name="end" type="fixed"><origin xyz="0 0 1"/><parent link="tool"/><child link="tip"/></joint>
+            <joint name="follow" type="continuous"><parent link="tip"/><child link="flag"/><mimic joint="turn"/></joint>
+            <link name="flag"/></robot>""")
+
+    def file(self, name, text):
+        path = os.path.join(self.folder.name, name)
+        with open(path, "w") as out:
+            out.write(text)
+        return path
+
+    def refused(self, error, start, call):
+        with self.subTest(start), self.assertRaises(error) as caught:
+            call()
+        self.assertTrue(str(caught.exception).startswith(start), str(caught.exception))
+
+    def test_answers_are_those_of_fmb_scene(self):
+        with open(DEMO + "path.csv") as table:
+            rows = [dict(zip(("time", "label", "waist", "lift", "elbow", "wrist"), line.split(",")))
+                    for line in table.read().splitlines()[1:]]
+        command = [os.environ["FMB"], "scene", DEMO + "robot.urdf", "--joints-csv", DEMO + "path.csv",
+                   "--with", DEMO + "world.json", "--ignore", "base,table"]
+        scenes = subprocess.run(command, check=True, text=True, capture_output=True).stdout
+        lines = subprocess.run([os.environ["FMB"], "query", "--local", "--json", "--box", "--gap", "--contacts"],
+                               input=scenes, text=True, capture_output=True).stdout.splitlines()
+        robot = fmb.Robot(DEMO + "robot.urdf", ignore=[("base", "table")])
+        self.assertEqual((robot.joints, robot.links),
+                         (("waist", "lift", "elbow", "wrist"), ("base", "shoulder", "upper_arm", "forearm", "hand")))
+        self.assertEqual((list(robot.lower), list(robot.upper), list(robot.home)),
+                         ([-3, -0.5, -2.5, -math.inf], [3, 2, 2.5, math.inf], [0] * 4))
+        self.assertAlmostEqual(robot.excess, 0.00244894, places=6)
+        scene = robot.scene(fmb.Scene.from_json(DEMO + "world.json"))
+        self.assertEqual(scene.names[5:], ("table", "post", "cube"))
+        found = 0
+        for row, line, json_scene in zip(rows, lines, scenes.splitlines(), strict=True):
+            robot.place(scene, [float(row[name]) for name in robot.joints])
+            answers = scene.decide(0, margin=scene.margin, **WANTED)
+            expected = json.loads(line)["pairs"]
+            for answer in expected:  # at rest the window does not matter
+                if "contact" in answer:
+                    answer["contact"] = [0, 0]
+            self.assertEqual([as_json(a) for a in answers], [of_json(pair) for pair in expected])
+            self.assertEqual([list(a.names) for a in answers], [pair["names"] for pair in expected])
+            found += len(expected)
+            # As in a scene of the file.
+            path = self.file("row.json", json_scene)
+            self.assertEqual(list(fmb.Scene.from_json(path).decide(0, margin=scene.margin, **WANTED)), list(answers))
+        self.assertGreater(found, 2)
+
+    def test_a_scene_of_json_is_that_of_the_file(self):
+        for dim in (2, 3):
+            for seed in range(4):
+                json_scene = random_scene(dim, 14, seed)
+                json_scene.pop("pairs", None)
+                json_scene["ignore"] = [[json_scene["bodies"][a]["id"], json_scene["bodies"][b]["id"]]
+                                        for a, b in ((0, 1), (5, 3))]
+                json_scene["margin"] = 0.25
+                scene = fmb.Scene.from_json(self.file("s.json", json.dumps(json_scene)))
+                again, _ = scene_of(json_scene)
+                self.assertEqual((scene.dim, scene.margin, scene.duration, scene.names),
+                                 (dim, 0.25, json_scene.get("duration", 1), again.names))
+                expected = again.decide(0.7, ignored=[(0, 1), (3, 5)], **WANTED)
+                self.assertEqual(list(scene.decide(0.7, **WANTED)), list(expected))
+        self.refused(fmb.Error, "none.json: No such file", lambda: fmb.Scene.from_json("none.json"))
+        path = self.file("s.json", '{"dim": 3, "bodies": [], "pairs": []}')
+        self.refused(fmb.Error, f"{path}: pairs: they are an argument", lambda: fmb.Scene.from_json(path))
+        path = self.file("s.json", '{"dim": 4, "bodies": []}')
+        self.refused(fmb.Error, f"{path}: dim: expected 2 or 3", lambda: fmb.Scene.from_json(path))
+        self.refused(TypeError, "path: expected a path", lambda: fmb.Scene.from_json(3))
+
+    def test_a_robot_carries_bodies_and_ignores_pairs(self):
+        world = fmb.Scene.from_json(self.file("w.json", json.dumps(
+            {"dim": 3, "margin": 0.5, "bodies": [
+                {"id": 1, "name": "table", "shape": "box", "size": [1, 1, 1], "position": [8, 0, 0], "group": -1},
+                {"id": 9, "name": "cup", "shape": "box", "size": [1, 1, 1], "position": [0, 0, 1], "link": "tool"},
+                {"id": 10, "name": "pen", "shape": "sphere", "radius": 0.5, "link": "tip"}],
+             "ignore": [["cup", "pen"]]})))
+        self.assertEqual(world.links, (None, "tool", "tip"))
+        robot = fmb.Robot(self.urdf, ignore=[("tool", "pen"), ("flag", "base")], base=[10, 0, 0, 0, 0, math.pi / 2])
+        self.assertEqual((robot.joints, list(robot.home)), (("turn", "slide"), [0, 2]))
+        scene = robot.scene(world)
+        self.assertEqual(scene.names, ("base", "plate", "arm", "tool", "cup", "pen", "table"))
+        self.assertEqual(sorted(tuple(pair) for pair in scene.ignored), [(0, 2), (2, 3), (3, 4), (3, 5), (4, 5)])
+        self.assertEqual(scene.margin, 0.5)
+        met = {answer.names for answer in scene.decide(0)}
+        self.assertEqual(met, {("plate", "arm")})  # base and plate are one rigid body
+        robot.place(scene, [math.pi, 8])  # to x = 18
+        scene.move(6, position=[18, 0, 5.25])
+        self.assertEqual({answer.names for answer in scene.decide(0)},
+                         {("plate", "arm"), ("cup", "table"), ("pen", "table")})
+        bare = fmb.Robot(self.urdf).scene()
+        self.assertEqual((len(bare), bare.margin), (4, 0))
+        srdf = self.file("r.srdf", "<robot><disable_collisions link1='tool' link2='base'/></robot>")
+        self.assertEqual([tuple(pair) for pair in fmb.Robot(self.urdf, srdf).scene().ignored], [(0, 3)])
+
+    def test_answers_after_moves_are_those_of_a_new_scene(self):
+        draw = random.Random(5)
+        robot = fmb.Robot(DEMO + "robot.urdf", base=(0, 0, 0.25))
+        cubes = fmb.Scene([fmb.box([0.2, 0.1, 0.3])] * 12, groups=[1] * 6 + [2] * 6, ignored=[(0, 6), (7, 1)],
+                          positions=[[draw.uniform(-0.6, 0.6) for _ in range(3)] for _ in range(12)])
+        scene = robot.scene(cubes)
+        kinds = [{}, {"margin": 0.1}, WANTED, {"split": 5}, {"ignored": [(0, 7), (2, 9)]}, {"pairs": [(0, 7), (3, 9)]}]
+        for step in range(150):
+            robot.place(scene, [draw.uniform(-2, 2) for _ in robot.joints])
+            if step % 10 == 3:  # an obstacle
+                scene.move(draw.randrange(5, 17), position=[draw.uniform(-0.6, 0.6) for _ in range(3)])
+            kind = kinds[draw.randrange(len(kinds)) if step % 4 == 0 else 0]
+            fresh = fmb.Scene(scene.bodies, names=scene.names, ignored=scene.ignored,
+                              groups=[0] * 5 + [1] * 6 + [2] * 6)
+            copy_poses(scene, fresh)
+            self.assertEqual(list(scene.decide(0, **kind)), list(fresh.decide(0, **kind)))
+        self.assertTrue(in_child(lambda: list(scene.decide(0)) == list(fresh.decide(0))))
+        self.assertTrue(in_child(lambda: robot.place(scene, robot.home) is None))
+
+    def test_ignored_pairs_belong_to_a_scene(self):
+        cube = fmb.box([1, 1, 1])
+        scene = fmb.Scene([cube] * 4, ignored=[(0, 1), (3, 2)])
+        pairs = {(0, 2), (0, 3), (1, 2), (1, 3)}
+        self.assertEqual({(a.a, a.b) for a in scene.decide(0)}, pairs)
+        self.assertEqual({(a.a, a.b) for a in scene.decide(0, ignored=[(0, 2)])}, pairs - {(0, 2)})
+        self.assertEqual({(a.a, a.b) for a in scene.decide(0)}, pairs)
+        self.assertEqual({(a.a, a.b) for a in scene.decide(0, split=1)}, {(0, 2), (0, 3)})
+        self.assertEqual(len(scene.decide(0, pairs=[(0, 1)])), 1)
+        self.assertEqual([list(pair) for pair in scene.ignored], [[0, 1], [3, 2]])
+        self.assertEqual(list(fmb.Scene([cube]).ignored), [])
+        for wrong in ([(0, 4)], [(0, 0)], [(-1, 0)], [0, 1], [("a", 0)]):
+            self.refused((ValueError, TypeError), "ignored",
+                         lambda: fmb.Scene([cube] * 4, ignored=wrong).decide(0))
+
+    def test_refusals_name_the_argument(self):
+        robot, nan = fmb.Robot(self.urdf), math.nan
+        scene, world = robot.scene(), fmb.Scene([fmb.box([1, 1])])
+        other = fmb.Robot(self.urdf).scene()
+        carried = fmb.Scene.from_json(self.file("w.json", json.dumps({"dim": 3, "bodies": [
+            {"id": 1, "shape": "sphere", "radius": 1, "link": "hand"}]})))
+        for error, start, call in (
+                (ValueError, "q: expected shape (2,), found (3,)", lambda: robot.place(scene, [0, 0, 0])),
+                (ValueError, "q: expected shape (2,), found (1, 2)", lambda: robot.place(scene, memoryview(array("d", [0, 0])).cast("B").cast("d", (1, 2)))),
+                (TypeError, "q: ", lambda: robot.place(scene, [[0, 0]])),
+                (TypeError, "q: ", lambda: robot.place(scene, ["a", 0])),
+                (TypeError, "q: ", lambda: robot.place(scene, None)),
+                (fmb.Error, "q: joint 'turn': its value is not finite", lambda: robot.place(scene, [nan, 0])),
+                (fmb.Error, "q: joint 'slide': its value is not finite", lambda: robot.place(scene, [0, math.inf])),
+                (fmb.Error, "q: joint 'turn': its value is beyond 1048576 radians", lambda: robot.place(scene, [2e6, 0])),
+                (ValueError, "scene: ", lambda: robot.place(other, [0, 0])),
+                (ValueError, "scene: ", lambda: robot.place(world, [0, 0])),
+                (ValueError, "scene: ", lambda: robot.place(None, [0, 0])),
+                (TypeError, "world: ", lambda: robot.scene("w.json")),
+                (fmb.Error, "expected a scene in 3D", lambda: robot.scene(world)),
+                (fmb.Error, "body 1: the robot has no link 'hand'", lambda: robot.scene(carried)),
+                (fmb.Error, "ignore: no body has the name 'x'", lambda: fmb.Robot(self.urdf, ignore=[("base", "x")]).scene()),
+                (ValueError, "ignore[1]: ", lambda: fmb.Robot(self.urdf, ignore=[("base", "arm"), ("base",)])),
+                ((ValueError, TypeError), "ignore", lambda: fmb.Robot(self.urdf, ignore=[3])),
+                (TypeError, "ignore", lambda: fmb.Robot(self.urdf, ignore=3)),
+                (ValueError, "base: ", lambda: fmb.Robot(self.urdf, base=[0, 0])),
+                (fmb.Error, "base: ", lambda: fmb.Robot(self.urdf, base=[0, 0, nan])),
+                (ValueError, "sides: ", lambda: fmb.Robot(self.urdf, sides=-4)),
+                (fmb.Error, "sides: expected a multiple of 4", lambda: fmb.Robot(self.urdf, sides=6)),
+                (fmb.Error, "excess: ", lambda: fmb.Robot(self.urdf, excess=-1)),
+                (TypeError, "path: ", lambda: fmb.Robot(None)),
+                (TypeError, "srdf: ", lambda: fmb.Robot(self.urdf, 3)),
+                (fmb.Error, "none.urdf: No such file", lambda: fmb.Robot("none.urdf")),
+                (fmb.Error, "none.srdf: No such file", lambda: fmb.Robot(self.urdf, "none.srdf")),
+                (AttributeError, "home: cannot be set", lambda: setattr(robot, "home", [0, 0])),
+                (TypeError, "fmb: a Robot cannot be copied", lambda: copy.copy(robot))):
+            self.refused(error, start, call)
+        broken = self.file("b.urdf", "<robot><link name='a'><collision/></link><joint name='j' type='planar'/></robot>")
+        with self.assertRaises(fmb.Error) as caught:
+            fmb.Robot(broken)
+        self.assertEqual(len(str(caught.exception).splitlines()), 2)
+
+
+def copy_poses(scene, out):
+    fmb._lib.fmb_flat_take(out._handle, fmb._lib.fmb_flat_placements(scene._handle), len(scene))
 
 if __name__ == "__main__":
     unittest.main()

@@ -29,7 +29,7 @@ setup() {
     cp "$FMB_BUILD"/man/*.[18] msgs/*.lcm "$BATS_TEST_TMPDIR"
     (cd "$BATS_TEST_TMPDIR" && for name in *.*; do echo "$name"; done
     for name in LICENSE fmb fmb fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb-robot.pc fmb.h fmb.pc \
-        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmbd fmbd fmbd.service libfmb-client.a \
+        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmb_robot_flat.h fmbd fmbd fmbd.service libfmb-client.a \
         libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
         libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
         sort | diff - <(find "$root" ! -type d -printf '%f\n' | sort)
@@ -267,7 +267,7 @@ END
         case $name in
         fmb) headers="$root/include/fmb.h $root/include/fmb_batch.h" ;;
         fmb-client) headers="$root/include/fmb_client.h $root/include/fmb_flat.h" ;;
-        fmb-robot) headers=$root/include/fmb_robot.h ;;
+        fmb-robot) headers="$root/include/fmb_robot.h $root/include/fmb_robot_flat.h" ;;
         esac
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
         grep -qx "${name/-/_}_\(status_text\|read\)" "$BATS_TEST_TMPDIR/names"
