@@ -104,7 +104,9 @@ def _load() -> ctypes.CDLL:
             ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer)),
             ("fmb_flat_decide", integer, (pointer, pointer, real, integer, integer, real, long,
                                           pointer, size, pointer, size, text)),
+            ("fmb_flat_decide_all", long, (pointer, real, integer, integer, real)),
             ("fmb_flat_count", size, (pointer,)),
+            ("fmb_flat_pack", None, (pointer, integer, integer, pointer)),
             ("fmb_flat_answers", None, 12 * (pointer,))):
         function = getattr(held if name in ("fmb_flat_place", "fmb_flat_take") else library, name)
         function.restype, function.argtypes = result, arguments
@@ -118,6 +120,7 @@ def _robots() -> ctypes.CDLL:
     library = _open(_ROBOT_SONAME, "fmb_robot_flat_abi", _ROBOT_ABI)
     integer, size, real, text, pointer = (
         ctypes.c_int, ctypes.c_size_t, ctypes.c_double, ctypes.c_char_p, ctypes.c_void_p)
+    held = ctypes.PyDLL(_ROBOT_SONAME)
     for name, result, arguments in (
             ("fmb_robot_flat_read", integer, 3 * (text,) + (pointer, integer, real, integer, pointer)),
             ("fmb_robot_free", None, (pointer,)),
@@ -135,9 +138,10 @@ def _robots() -> ctypes.CDLL:
             ("fmb_robot_flat_counts", None, 3 * (pointer,)),
             ("fmb_robot_flat_copy", None, 11 * (pointer,)),
             ("fmb_robot_flat_placements", pointer, (pointer,)),
-            ("fmb_robot_flat_place", integer, 2 * (pointer,))):
-        function = getattr(library, name)
+            ("fmb_robot_flat_place", integer, 4 * (pointer,))):
+        function = getattr(held if name == "fmb_robot_flat_place" else library, name)
         function.restype, function.argtypes = result, arguments
+        setattr(library, name, function)
     return library
 
 
@@ -223,7 +227,7 @@ _TYPES = {"d": ("numbers of at most 64 bits", "d", "bBhHiIlLqQefd"),
 
 def _float(name: str, value: Any) -> float:
     try:
-        return ctypes.c_double(value).value  # float() also takes text
+        return value if value.__class__ is float else ctypes.c_double(value).value  # float() also takes text
     except TypeError:
         raise TypeError(f"{name}: expected a number, found {value!r:.40}") from None
     except OverflowError:
@@ -623,6 +627,24 @@ def _rows(value: Any) -> Any:
     return Rows(value) if isinstance(value, memoryview) and value.ndim > 1 else value
 
 
+@functools.lru_cache(maxsize=None)
+def _columns(dim: int, pairs: bool, wanted: int) -> tuple[dict[str, Any], int]:
+    """The columns of fmb_flat_pack(): the place, in bytes of an answer, and type and shape of what is wanted,
+    else None; and the bytes of an answer."""
+    contact, corners, point, gap = (
+        wanted & bit for bit in (_WANT_TIMES, _WANT_BOX, _WANT_POINT, _WANT_GAP))
+    columns: dict[str, Any] = {}
+    width = 0
+    for name, found, code, shape in (
+            ("pairs", pairs, "q", (2,)), ("contacts", contact, "d", (2,)), ("boxes", corners, "d", (2, dim)),
+            ("points", point, "d", (1 + dim,)), ("gaps", gap, "d", (2,)), ("directions", gap, "d", (dim,)),
+            ("times", gap, "d", ()), ("witnesses", gap, "d", (2, dim)), ("frames", gap, "q", (2,)),
+            ("statuses", True, "i", ()), ("verdicts", True, "B", ())):
+        columns[name] = (width, code, shape) if found else None
+        width += math.prod(shape) * array(code).itemsize if found else 0
+    return columns, width
+
+
 class Answers(Sequence):
     """The answers to n pairs, in their order. A sequence of Answer, and an array for each field;
     None where it was not wanted.
@@ -642,28 +664,28 @@ class Answers(Sequence):
     frames: (n, 2) int64, indices of the frames of a and b that have this gap
     """
 
-    def __init__(self, handle: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
-        self._names = names
-        self._count = n = _lib.fmb_flat_count(handle)
-        contact, corners, point, gap = (
-            wanted & bit for bit in (_WANT_TIMES, _WANT_BOX, _WANT_POINT, _WANT_GAP))
+    def __init__(self, handle: int, count: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
+        self._names, self._pairs, self._count = names, pairs, count
+        self._columns, width = _columns(dim, pairs is None, wanted)
+        self._data = (ctypes.c_char * ((count or 1) * width))()  # of all columns; each becomes an array when it is used
+        if count:
+            _lib.fmb_flat_pack(handle, pairs is not None, wanted, self._data)
 
-        def new(wanted: Any, code: str, *shape: int) -> Any:  # of zeros
-            if not wanted:
-                return None
-            if numpy is not None:
-                return numpy.zeros((n,) + shape, code)
-            out = memoryview(bytearray((n or 1) * math.prod(shape) * array(code).itemsize))
-            return out.cast(code, (n or 1,) + shape)[:n]
-
-        columns = (new(pairs is None, "q", 2), new(True, "B"), new(True, "i"), new(contact, "d", 2),
-                   new(corners, "d", 2, dim), new(point, "d", 1 + dim), new(gap, "d", 2),
-                   new(gap, "d", dim), new(gap, "d"), new(gap, "d", 2, dim), new(gap, "q", 2))
-        _lib.fmb_flat_answers(handle, *map(_pointer, columns))
-        (self.pairs, self.verdicts, self.statuses, self.contacts, self.boxes, self.points, self.gaps,
-         self.directions, self.times, self.witnesses, self.frames) = map(_rows, columns)
-        if pairs is not None:
-            self.pairs = _rows(pairs) if numpy is None else numpy.asarray(pairs)
+    def __getattr__(self, name: str) -> Any:
+        if name[0] == "_" or name not in self._columns:
+            raise AttributeError(f"'Answers' object has no attribute '{name}'")
+        n, column, view = self._count, self._columns[name], None
+        if name == "pairs" and self._pairs is not None:
+            view = self._pairs if numpy is None else numpy.asarray(self._pairs)
+        elif column and numpy is not None:
+            offset, code, shape = column
+            view = numpy.frombuffer(self._data, code, n * math.prod(shape), n * offset).reshape((n,) + shape)
+        elif column:
+            offset, code, shape = column
+            size = (n or 1) * math.prod(shape) * array(code).itemsize
+            view = memoryview(self._data).cast("B")[n * offset:n * offset + size].cast(code, (n or 1,) + shape)[:n]
+        view = self.__dict__[name] = _rows(view)
+        return view
 
     def __len__(self) -> int:
         return self._count
@@ -904,17 +926,25 @@ class Scene(_Handle):
 
         A list of pairs is fastest per pair, above all without a margin and with bodies of one frame.
         """
-        for name, value in (("split", split), ("ignored", ignored)):
-            if pairs is not None and value is not None:
-                raise ValueError(f"{name}: not with pairs")
+        want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
+            _WANT_POINT if points else 0) + (_WANT_GAP if gaps else 0)
+        if pairs is None and split is None and ignored is None and label is None and client is None:
+            with self._lock:  # the way of most scenes, with few calls; what is refused is so below
+                try:
+                    count = _lib.fmb_flat_decide_all(self._handle, duration, bool(instant), want, margin)
+                except ctypes.ArgumentError:
+                    count = -1
+                if count >= 0:
+                    return Answers(self._handle, count, self.dim, self.names, None,
+                                   want | (_WANT_GAP if margin else 0))
+        if pairs is not None and (split is not None or ignored is not None):
+            raise ValueError(f"{'ignored' if split is None else 'split'}: not with pairs")
         listed = None if pairs is None else _flat("pairs", pairs, "q", ("m", 2))[0]
         left_out = None if ignored is None else _flat("ignored", ignored, "q", ("m", 2))[0]
         first = -1 if split is None else _int("split", split)
         if split is not None and first < 0:
             raise ValueError(f"split: {first} is negative")
         duration, margin = _float("duration", duration), _float("margin", margin)
-        want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
-            _WANT_POINT if points else 0) + (_WANT_GAP if gaps else 0)
         with self._lock, _lock_of(client):
             status = _lib.fmb_flat_decide(
                 self._handle, _handle_of(client), duration, bool(instant), want, margin, first,
@@ -922,7 +952,7 @@ class Scene(_Handle):
                 _pointer(left_out), 0 if left_out is None else len(left_out),
                 _text("label", label))
             self._check(status)
-            answers = Answers(self._handle, self.dim, self.names, listed,
+            answers = Answers(self._handle, _lib.fmb_flat_count(self._handle), self.dim, self.names, listed,
                               want | (_WANT_GAP if margin else 0))
         worst = min(memoryview(answers.statuses), default=0) if client else 0
         if worst < 0:
@@ -967,9 +997,9 @@ class _FlatScene(_Handle):
         self._handle = handle.value
         if status:
             raise Error(lib.fmb_robot_flat_why(handle).decode(errors="replace"))
-        counts, self._settings = (ctypes.c_int64 * 6)(), (ctypes.c_double * 2)()
+        counts, self._settings = (ctypes.c_int64 * 5)(), (ctypes.c_double * 2)()
         lib.fmb_robot_flat_counts(handle, counts, self._settings)
-        self._dim, self._count, self._frames, self._numbers, self._ignored, self._moved = counts
+        self._dim, self._count, self._frames, self._numbers, self._ignored = counts
 
     def bodies(self) -> list[Body]:
         frames, shapes, counts = (ctypes.c_int64 * self._count)(), (ctypes.c_int32 * self._frames)(), (
@@ -1088,7 +1118,8 @@ class Robot(_Handle):
         order = sorted(range(len(world)), key=lambda i: world.links[i] is None) if world else []
         return flat.scene(self._bodies + [world.bodies[i] for i in order], margin=flat._settings[1],
                           duration=world.duration if world else None,
-                          _robot=(self, flat, (ctypes.c_double * len(self.joints))()))
+                          _robot=(self, flat, (ctypes.c_double * len(self.joints))(),
+                                  ctypes.cast(_lib.fmb_flat_take, ctypes.c_void_p).value))
 
     def place(self, scene: Scene, q: Array) -> None:
         """Poses the links and what they carry; all else in the scene stays where it is.
@@ -1096,12 +1127,14 @@ class Robot(_Handle):
         scene: of scene()
         q: (len(joints),), finite values of the joints; limits are not checked
         """
-        robot, flat, values = getattr(scene, "_robot", None) or 3 * (None,)
+        robot, flat, values, take = getattr(scene, "_robot", None) or 4 * (None,)
         if robot is not self:
             raise ValueError("scene: expected a scene of this robot: scene() makes one")
-        view, _ = _flat("q", q, "d", (len(self.joints),))
+        numbers = q.tolist() if numpy is not None and q.__class__ is numpy.ndarray and q.ndim == 1 else q
         with scene._lock:
-            values[:] = view.tolist()
-            if self._lib.fmb_robot_flat_place(flat._handle, values):
+            try:
+                values[:] = numbers
+            except (TypeError, ValueError):
+                values[:] = _flat("q", q, "d", (len(self.joints),))[0].tolist()
+            if self._lib.fmb_robot_flat_place(flat._handle, values, take, scene._handle):
                 raise Error("q: " + self._lib.fmb_robot_flat_why(flat._handle).decode(errors="replace"))
-            _lib.fmb_flat_take(scene._handle, self._lib.fmb_robot_flat_placements(flat._handle), flat._moved)

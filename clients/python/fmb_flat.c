@@ -281,8 +281,9 @@ const void *fmb_flat_placements(const struct fmb_flat_scene *scene)
     return scene->placements;
 }
 
-void fmb_flat_take(struct fmb_flat_scene *scene, const void *placements, size_t count)
+void fmb_flat_take(void *of, const void *placements, size_t count)
 {
+    struct fmb_flat_scene *scene = of;
     const struct fmb_placement *from = placements;
     for (size_t i = 0; i < count && i < scene->placement_count; i++) {
         struct fmb_placement *to = &scene->placements[i];
@@ -534,7 +535,8 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                                     .label = label};
     if (client)
         return decide_on_bus(flat, client, &scene);
-    status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
+    if (!is_again(flat, &scene)) /* else placements are checked one by one */
+        status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
     if (status == FMB_OK) {
         status = pairs && flat->single && margin == 0 ? decide_batch(flat, &scene)
                                                       : decide_steps(flat, &scene);
@@ -542,6 +544,14 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
             refuse(flat, status, NULL, 0);
     }
     return status;
+}
+
+int64_t fmb_flat_decide_all(struct fmb_flat_scene *scene, double duration, int instant,
+                            unsigned want, double margin)
+{
+    const int status =
+        fmb_flat_decide(scene, NULL, duration, instant, want, margin, -1, NULL, 0, NULL, 0, NULL);
+    return status == FMB_OK ? (int64_t) scene->count : -1;
 }
 
 size_t fmb_flat_count(const struct fmb_flat_scene *scene)
@@ -600,6 +610,33 @@ void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_
         for (int i = 0; frames && i < 2; i++)
             frames[2 * k + (size_t) i] = gap[k].frame[i];
     }
+}
+
+/* Returns *at, and moves it on by a column of n rows; or NULL if it is not wanted. */
+static void *take_column(char **at, bool wanted, size_t n, size_t width)
+{
+    void *column = wanted ? *at : NULL;
+    *at += wanted ? n * width : 0;
+    return column;
+}
+
+void fmb_flat_pack(const struct fmb_flat_scene *scene, int listed, unsigned want, void *data)
+{
+    const size_t n = scene->count, dim = (size_t) scene->dim, real = sizeof(double);
+    const bool gap = want & FMB_WANT_GAP;
+    char *at = data;
+    int64_t *pairs = take_column(&at, !listed, n, 2 * sizeof *pairs);
+    double *contacts = take_column(&at, want & FMB_WANT_TIMES, n, 2 * real);
+    double *boxes = take_column(&at, want & FMB_WANT_BOX, n, 2 * dim * real);
+    double *points = take_column(&at, want & FMB_WANT_POINT, n, (1 + dim) * real);
+    double *gaps = take_column(&at, gap, n, 2 * real);
+    double *directions = take_column(&at, gap, n, dim * real);
+    double *times = take_column(&at, gap, n, real);
+    double *witnesses = take_column(&at, gap, n, 2 * dim * real);
+    int64_t *frames = take_column(&at, gap, n, 2 * sizeof *frames);
+    int32_t *statuses = take_column(&at, true, n, sizeof *statuses);
+    fmb_flat_answers(scene, pairs, (uint8_t *) at, statuses, contacts, boxes, points, gaps,
+                     directions, times, witnesses, frames);
 }
 
 /* ---- The bus ---- */

@@ -76,7 +76,7 @@ const void *fmb_flat_placements(const struct fmb_flat_scene *scene);
 
 /* Copies the poses of the first count elements of such an array, of valid poses, to those of the
  * scene. */
-void fmb_flat_take(struct fmb_flat_scene *scene, const void *placements, size_t count);
+void fmb_flat_take(void *scene, const void *placements, size_t count);
 
 /* In a child process after a fork during which another thread was using the scene: makes the scene
  * usable, without answers. If the thread was in fmb_flat_place() or fmb_flat_take(), the poses of
@@ -121,6 +121,11 @@ int fmb_flat_decide(struct fmb_flat_scene *scene, struct fmb_client *client, dou
                     size_t pair_count, const int64_t *ignored, size_t ignored_count,
                     const char *label);
 
+/* As fmb_flat_decide() of all pairs, in process, without a label; but returns the number of
+ * answers, or -1 after an error, whose status fmb_flat_decide() returns. */
+int64_t fmb_flat_decide_all(struct fmb_flat_scene *scene, double duration, int instant,
+                            unsigned want, double margin);
+
 /* Returns the number of answers that the scene keeps. */
 size_t fmb_flat_count(const struct fmb_flat_scene *scene);
 
@@ -143,6 +148,13 @@ void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_
                       int32_t *statuses, double *contacts, double *boxes, double *points,
                       double *gaps, double *directions, double *times, double *witnesses,
                       int64_t *frames);
+
+/* As fmb_flat_answers(), into one memory.
+ * In:  listed  not 0: of a list of pairs
+ *      want    as it was wanted; with FMB_WANT_GAP if the margin was not 0
+ * Out: data    aligned for doubles: pairs (unless listed), contacts, boxes, points, gaps,
+ * directions, times, witnesses and frames, as wanted, then statuses and verdicts, without spaces */
+void fmb_flat_pack(const struct fmb_flat_scene *scene, int listed, unsigned want, void *data);
 
 /* ---- The bus ---- */
 

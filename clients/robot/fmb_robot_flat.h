@@ -44,10 +44,10 @@ int fmb_robot_flat_make(const struct fmb_robot *robot, const void *placements,
 void fmb_robot_flat_free(struct fmb_robot_flat *flat); /* may be NULL */
 const char *fmb_robot_flat_why(struct fmb_robot_flat *flat);
 
-/* Out: counts    dimension; numbers of placements, of their frames, of the numbers of these, of
- *                ignored pairs, and of placements that the robot moves
+/* Out: counts    dimension; numbers of placements, of their frames, of the numbers of these, and of
+ *                ignored pairs
  *      settings  duration and margin */
-void fmb_robot_flat_counts(const struct fmb_robot_flat *flat, int64_t counts[6],
+void fmb_robot_flat_counts(const struct fmb_robot_flat *flat, int64_t counts[5],
                            double settings[2]);
 
 /* Copies a scene, as fmb_flat_body_make() and fmb_flat_scene_make() take it. Each array may be
@@ -66,8 +66,11 @@ void fmb_robot_flat_copy(const struct fmb_robot_flat *flat, int64_t *frames, int
 /* Returns the placements, for fmb_flat_take(). */
 const void *fmb_robot_flat_placements(const struct fmb_robot_flat *flat);
 
-/* As fmb_robot_place(). */
-int fmb_robot_flat_place(struct fmb_robot_flat *flat, const double *q);
+/* As fmb_robot_place(); then calls take with the scene and the placements that moved. take:
+ * fmb_flat_take(). */
+int fmb_robot_flat_place(struct fmb_robot_flat *flat, const double *q,
+                         void (*take)(void *scene, const void *placements, size_t count),
+                         void *scene);
 
 #ifdef __cplusplus
 }

@@ -106,11 +106,11 @@ static size_t copy_frame(const struct fmb_frame *frame, int32_t *shape, double *
     return count + of.has_radius;
 }
 
-void fmb_robot_flat_counts(const struct fmb_robot_flat *flat, int64_t counts[6], double settings[2])
+void fmb_robot_flat_counts(const struct fmb_robot_flat *flat, int64_t counts[5], double settings[2])
 {
     const struct fmb_scene *scene = flat->scene;
     int32_t shape;
-    memset(counts, 0, 6 * sizeof *counts);
+    memset(counts, 0, 5 * sizeof *counts);
     counts[0] = flat->dim;
     counts[1] = (int64_t) scene->placement_count;
     for (size_t i = 0; i < scene->placement_count; i++)
@@ -120,7 +120,6 @@ void fmb_robot_flat_counts(const struct fmb_robot_flat *flat, int64_t counts[6],
                 (int64_t) copy_frame(fmb_body_frame(scene->placements[i].body, k), &shape, NULL);
         }
     counts[4] = (int64_t) scene->ignored_count;
-    counts[5] = flat->robot ? (int64_t) fmb_robot_moved(flat->robot) : 0;
     settings[0] = scene->duration;
     settings[1] = scene->margin;
 }
@@ -161,7 +160,12 @@ const void *fmb_robot_flat_placements(const struct fmb_robot_flat *flat)
     return flat->scene->placements;
 }
 
-int fmb_robot_flat_place(struct fmb_robot_flat *flat, const double *q)
+int fmb_robot_flat_place(struct fmb_robot_flat *flat, const double *q,
+                         void (*take)(void *scene, const void *placements, size_t count),
+                         void *scene)
 {
-    return fmb_robot_place(flat->robot, q);
+    const int status = fmb_robot_place(flat->robot, q);
+    if (status == 0)
+        take(scene, flat->scene->placements, fmb_robot_moved(flat->robot));
+    return status;
 }
