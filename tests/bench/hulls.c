@@ -14,9 +14,9 @@
 /* ---- Pairs ---- */
 
 /* Where A's point farthest along a direction and B's farthest against it are so far apart that far
- * along it: this is the distance, or at least the depth. Random directions, or, of a pair with one
- * radius, the normal of a face; or no orientations, and multiples of 2^-20, so that they touch
- * exactly; or a face on a face. */
+ * along it: this is the distance, or at least the depth. Frames with a radius overlap by at most
+ * half of it. Random directions, or, of a pair with one radius, the normal of a face; or no
+ * orientations, and multiples of 2^-20, so that they touch exactly; or a face on a face. */
 enum place { ANY, EXACT, TILTED };
 
 struct contact {
@@ -225,7 +225,9 @@ static void draw_pair(struct draw *draw, const struct kind *kind, const struct c
         }
         memcpy(points[0], farthest(&draft[0], way, 1), sizeof points[0]);
     }
-    const double apart = (contact->gap + draft[0].radius + draft[1].radius) / length;
+    const double radius = draft[0].radius + draft[1].radius;
+    const double gap = radius > 0 ? fmax(contact->gap, -radius / 2) : contact->gap;
+    const double apart = (gap + radius) / length;
     for (int axis = 0; axis < 3; axis++)
         draft[1].position[axis] = points[0][axis] - points[1][axis] + apart * way[axis];
 }
