@@ -5,6 +5,7 @@
 #include "args.h"
 #include "complain.h"
 #include "enclosure.h"
+#include "fmb_batch.h"
 #include "joints.h"
 #include "number.h"
 #include "robot_scene.h"
@@ -185,11 +186,22 @@ static void end_text(FILE *out, const char *place, char **text)
 
 static void measure(struct run *run)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < run->robot->body_count; i++)
-        robot_bounds(&run->scene->placements[i], low, high);
+    double most[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < run->robot->body_count; i++) {
+        const struct fmb_placement *link = &run->scene->placements[i];
+        for (unsigned k = 0; k < link->body->frame_count; k++) {
+            struct fmb_prepared frame;
+            double box[2][FMB_DIM_MAX];
+            fmb_prepare(link, k, 1, &frame);
+            fmb_box_of(&frame, 0, box);
+            for (int axis = 0; axis < 3; axis++) {
+                most[0][axis] = fmin(most[0][axis], box[0][axis]);
+                most[1][axis] = fmax(most[1][axis], box[1][axis]);
+            }
+        }
+    }
     for (int axis = 0; axis < 3; axis++)
-        run->size[axis] = high[axis] - low[axis];
+        run->size[axis] = most[1][axis] - most[0][axis];
 }
 
 static double excess_of(const struct robot_world *world)
@@ -203,18 +215,21 @@ static void say_robot(const struct run *run)
     char text[5][NUMBER_TEXT_MAX], more[128] = "", unit[4600] = "";
     for (int axis = 0; axis < 3; axis++)
         number_short(run->size[axis], text[axis]);
-    for (size_t w = 0; w < run->options->world_count; w++)
+    const struct robot_meshes *meshes = &run->robot->meshes;
+    for (size_t w = 0; w < run->options->world_count; w++) {
         excess = fmax(excess, excess_of(&run->worlds[w]));
+        if (meshes->scaled == 0 && run->worlds[w].robot)
+            meshes = &run->worlds[w].robot->meshes;
+    }
     if (excess > 0) /* rounded up */
         snprintf(more, sizeof more, "; hulls extend beyond what they enclose by at most %s",
                  number_short(excess * (1 + 1e-5), text[3]));
-    if (run->robot->meshes.scaled > 0)
+    if (meshes->scaled > 0)
         snprintf(
             unit, sizeof unit,
             "; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: %s m "
             "in %s, files: %zu",
-            number_short(run->robot->meshes.first_unit, text[4]), run->robot->meshes.first_file,
-            run->robot->meshes.scaled);
+            number_short(meshes->first_unit, text[4]), meshes->first_file, meshes->scaled);
     complain("%s: links: %zu, with a body: %zu; size: %s x %s x %s%s%s%s", run->robot->tree.path,
              run->robot->tree.link_count, run->robot->body_count, text[0], text[1], text[2],
              run->options->table ? " in the first pose" : "", more, unit);

@@ -37,7 +37,4 @@ const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin);
 
-/* Extends a box by the vertices of a placed body of boxes, cuboids and hulls, with their radii. */
-void robot_bounds(const struct fmb_placement *placement, double low[3], double high[3]);
-
 #endif

@@ -49,7 +49,7 @@ setup() {
         'FMB_WANT_POINT _WANT_POINT'; do
         echo "_Static_assert(${number% *} == $($python -c "import fmb; print(fmb.${number#* })"), \"$number\");"
     done > "$BATS_TEST_TMPDIR/numbers"
-    [ "$(wc -l < "$BATS_TEST_TMPDIR/numbers")" = 9 ]
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/numbers")" = 10 ]
     ${CC:-gcc} -fsyntax-only -Iclients/lib -Iservice/fmb -Imsgs/codec -x c -include clients/python/fmb_flat.h -include clients/robot/fmb_robot_flat.h \
         -include clients/lib/fmb_client.h "$BATS_TEST_TMPDIR/numbers"
 }
