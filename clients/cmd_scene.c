@@ -235,38 +235,15 @@ static void say_robot(const struct run *run)
              run->options->table ? " in the first pose" : "", more, unit);
 }
 
-static const char *const origin_names[ROBOT_ORIGINS] = {[ROBOT_NEIGHBOURS] = "neighbours",
-                                                        [ROBOT_SRDF] = "by the SRDF",
-                                                        [ROBOT_SRDF_DEFAULT] = "by its defaults",
-                                                        [ROBOT_CARRIED] = "carried",
-                                                        [ROBOT_WORLD] = "by scenes",
-                                                        [ROBOT_OPTION] = "by --ignore"};
-
-static int compare_groups(const void *x, const void *y)
-{
-    const int64_t a = *(const int64_t *) x, b = *(const int64_t *) y;
-    return (a > b) - (a < b);
-}
-
-/* Returns the number of pairs of one group among the placements from first to end - 1. */
-static unsigned long long count_grouped(const struct fmb_robot_scene *scene, size_t first,
-                                        size_t end)
-{
-    int64_t *group = allocate(end, sizeof *group);
-    unsigned long long count = 0;
-    size_t n = 0, same = 0;
-    for (size_t i = first; i < end; i++)
-        if (scene->placements[i].group != 0)
-            group[n++] = scene->placements[i].group;
-    if (n > 0)
-        qsort(group, n, sizeof *group, compare_groups);
-    for (size_t i = 1; i < n; i++) {
-        same = group[i] == group[i - 1] ? same + 1 : 0;
-        count += same;
-    }
-    free(group);
-    return count;
-}
+static const char *const origin_names[ROBOT_ORIGINS + 2] = {
+    [ROBOT_NEIGHBOURS] = "neighbours",
+    [ROBOT_SRDF] = "by the SRDF",
+    [ROBOT_SRDF_DEFAULT] = "by its defaults",
+    [ROBOT_CARRIED] = "carried",
+    [ROBOT_WORLD] = "by scenes",
+    [ROBOT_OPTION] = "by --ignore",
+    [ROBOT_ORIGINS] = "joined rigidly",
+    [ROBOT_ORIGINS + 1] = "within groups"};
 
 static void say_srdf(const struct fmb_robot *robot, FILE *out)
 {
@@ -285,32 +262,28 @@ static void say_srdf(const struct fmb_robot *robot, FILE *out)
     fprintf(out, "%s)", *at ? ", ..." : "");
 }
 
-static void say_pairs(const struct run *run)
+static void say_pairs(struct run *run)
 {
-    const struct fmb_robot_scene *scene = run->scene;
-    const size_t n = scene->owner.scene.placement_count, links = run->robot->body_count;
-    const unsigned long long rigid = count_grouped(scene, 0, links);
-    const unsigned long long grouped = count_grouped(scene, links, n);
-    const unsigned long long ignored = scene->ignored.count + rigid + grouped;
-    size_t count[ROBOT_ORIGINS] = {0}, size;
+    struct fmb_robot_scene *scene = run->scene;
+    const uint64_t n = scene->owner.scene.placement_count;
+    const uint64_t tested = scene_count_pairs(&scene->owner), ignored = n * (n - 1) / 2 - tested;
+    uint64_t count[ROBOT_ORIGINS + 2] = {0};
     const char *before = ": ";
     char *text;
+    size_t size;
     FILE *out = begin_text(&text, &size);
     for (size_t i = 0; i < scene->ignored.count; i++)
         count[scene->ignored.pair[i].origin]++;
-    fprintf(out, "pairs tested: %llu, ignored: %llu",
-            (unsigned long long) n * (n - 1) / 2 - ignored, ignored);
-    for (int origin = 0; origin < ROBOT_ORIGINS; origin++)
+    for (unsigned i = 1; i < run->robot->body_count; i++)
+        for (unsigned k = 0; k < i; k++)
+            count[ROBOT_ORIGINS] += pair_is_within_group(&scene->owner.scene, k, i);
+    count[ROBOT_ORIGINS + 1] = ignored - scene->ignored.count - count[ROBOT_ORIGINS];
+    fprintf(out, "pairs tested: %" PRIu64 ", ignored: %" PRIu64, tested, ignored);
+    for (int origin = 0; origin < ROBOT_ORIGINS + 2; origin++)
         if (count[origin] > 0) {
-            fprintf(out, "%s%zu %s", before, count[origin], origin_names[origin]);
+            fprintf(out, "%s%" PRIu64 " %s", before, count[origin], origin_names[origin]);
             before = ", ";
         }
-    if (rigid > 0) {
-        fprintf(out, "%s%llu joined rigidly", before, rigid);
-        before = ", ";
-    }
-    if (grouped > 0)
-        fprintf(out, "%s%llu within groups", before, grouped);
     say_srdf(run->robot, out);
     end_text(out, "", &text);
 }
@@ -335,20 +308,10 @@ static void say_more(const struct run *run)
 {
     const struct fmb_robot *robot = run->robot;
     const struct robot *tree = &robot->tree;
-    char text[NUMBER_TEXT_MAX];
     for (size_t i = 0; i < tree->link_count; i++)
         if (robot->body_of_link[i] == ROBOT_NO_BODY)
             complain("%s: link '%s' has no <collision> and no body", tree->path,
                      tree->links[i].name->name);
-    scene_report_outside(tree->path, robot->owner.outside);
-    if (robot->meshes.rounded > 0) /* rounded up */
-        complain(
-            "%s: hulls of meshes that have fewer vertices and a radius: %zu; they contain the "
-            "meshes, and extend beyond them by at most %s",
-            tree->path, robot->meshes.rounded,
-            number_short(robot->meshes.excess * (1 + 1e-5), text));
-    for (size_t w = 0; w < run->options->world_count; w++)
-        scene_report_outside(run->worlds[w].path, excess_of(&run->worlds[w]));
     robot_world_print("", robot_lines_text(&run->scene->notes));
     for (size_t i = 0; i < run->scene->ignored.count; i++) {
         const struct robot_pair *pair = &run->scene->ignored.pair[i];
@@ -365,7 +328,7 @@ static void say_more(const struct run *run)
         robot_world_print("the robot has no link", robot->unknown.text);
 }
 
-static void say(const struct run *run, const struct joint_table *table)
+static void say(struct run *run, const struct joint_table *table)
 {
     say_robot(run);
     say_pairs(run);

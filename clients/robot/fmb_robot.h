@@ -93,6 +93,7 @@ struct fmb_robot_world {
     /* [placement_count]: the link that carries a body, whose pose is then relative to that link,
      * and which is not tested against it; NULL: none. links itself may be NULL. */
     const char *const *links;
+    const char *name; /* for messages, such as that of a file; NULL: none */
 };
 
 /* Makes a scene: first the bodies of links, as placements 0 to number - 1 with ids from 1 on and

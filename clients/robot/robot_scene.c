@@ -53,16 +53,18 @@ bool robot_pairs_has(const struct robot_pairs *pairs, unsigned a, unsigned b)
 
 /* ---- Bodies ---- */
 
-static bool refuse_body(struct fmb_robot_scene *scene, const struct fmb_placement *body,
-                        const char *why)
+/* place: "": none. */
+static bool refuse_body(struct fmb_robot_scene *scene, const char *place,
+                        const struct fmb_placement *body, const char *why)
 {
-    robot_say(&scene->errors, "body %" PRId64 "%s%s: %s", body->id, body->name ? ", " : "",
-              body->name ? body->name : "", why);
+    robot_say(&scene->errors, "%s%sbody %" PRId64 "%s%s: %s", place, *place ? ": " : "", body->id,
+              body->name ? ", " : "", body->name ? body->name : "", why);
     return false;
 }
 
 /* Sets a carried body. */
-static bool carry(struct fmb_robot_scene *scene, const struct fmb_placement *body, const char *name)
+static bool carry(struct fmb_robot_scene *scene, const char *place,
+                  const struct fmb_placement *body, const char *name)
 {
     const struct robot_name *link;
     struct robot_carried *out = &scene->carried[scene->carried_count++];
@@ -77,9 +79,10 @@ static bool carry(struct fmb_robot_scene *scene, const struct fmb_placement *bod
     }
     snprintf(why, sizeof why, "the robot has no link '%.*s'", QUERY_NAME_MAX, name);
     if (!link)
-        return refuse_body(scene, body, why);
+        return refuse_body(scene, place, body, why);
     if (v[0] != 0 || v[1] != 0 || v[2] != 0)
-        return refuse_body(scene, body, "a body that a link carries has no velocity of its own");
+        return refuse_body(scene, place, body,
+                           "a body that a link carries has no velocity of its own");
     out->link = link->index;
     return true;
 }
@@ -93,13 +96,14 @@ static bool add_bodies(struct fmb_robot_scene *scene, const struct fmb_robot_wor
     bool good = true;
     for (size_t w = 0; w < count; w++)
         for (size_t i = 0; i < worlds[w].scene->placement_count; i++, index++) {
+            const char *name = worlds[w].name ? worlds[w].name : "";
             const char *link = worlds[w].links ? worlds[w].links[i] : NULL;
             if (carried != (link != NULL))
                 continue;
             const struct fmb_placement *body = &worlds[w].scene->placements[i];
             *index = (unsigned) out->placement_count;
             scene->placements[out->placement_count++] = *body;
-            good = (!carried || carry(scene, body, link)) && good;
+            good = (!carried || carry(scene, name, body, link)) && good;
         }
     return good;
 }
@@ -272,7 +276,8 @@ static bool check_worlds(struct fmb_robot_scene *scene, const struct fmb_robot_w
             if (world->placements[i].body->dim != 3)
                 why = "expected a scene in 3D";
         if (why)
-            robot_say(&scene->errors, "%s", why);
+            robot_say(&scene->errors, "%s%s%s", worlds[w].name ? worlds[w].name : "",
+                      worlds[w].name ? ": " : "", why);
         good = good && !why;
         out->duration = fmax(out->duration, world->duration);
         out->margin = fmax(out->margin, world->margin);
@@ -383,12 +388,8 @@ bool robot_scene_place(struct fmb_robot_scene *scene, const double *value, doubl
     for (size_t i = 0; i < end; i++) {
         const struct fmb_placement *body = &scene->placements[i];
         const enum fmb_status status = fmb_placement_check(body);
-        if (status != FMB_OK) {
-            robot_say(&scene->errors, "%s%sbody %" PRId64 "%s%s: %s", place ? place : "",
-                      place ? ": " : "", body->id, body->name ? ", " : "",
-                      body->name ? body->name : "", fmb_status_text((int) status));
-            return false;
-        }
+        if (status != FMB_OK)
+            return refuse_body(scene, place, body, fmb_status_text((int) status));
     }
     return true;
 }
@@ -409,5 +410,5 @@ int fmb_robot_place(struct fmb_robot_scene *scene, const double *q)
             return -1;
         }
     }
-    return robot_scene_place(scene, scene->value, 0, NULL) ? 0 : -1;
+    return robot_scene_place(scene, scene->value, 0, "") ? 0 : -1;
 }

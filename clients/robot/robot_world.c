@@ -64,19 +64,13 @@ bool robot_world_read(const char *path, const struct fmb_robot_options *options,
     char error[ROBOT_WORLD_ERROR_MAX];
     *out = (struct robot_world){.path = path};
     if (!is_xml(path)) {
-        out->world = (struct fmb_robot_world){.scene = &out->json.scene};
         if (!robot_world_read_json(path, &out->json, error)) {
             complain("%s%s", error,
                      strstr(error, ": no body has the ") ? " (--ignore takes names of links)" : "");
             return false;
         }
-        out->world.links = out->json.links;
-        if (out->json.dim != 3 || out->json.scene.which == FMB_PAIRS_LISTED)
-            complain("%s: %s", path,
-                     out->json.dim != 3
-                         ? "expected a scene in 3D"
-                         : "\"pairs\" would leave out the robot: use \"ignore\" or \"group\"");
-        return out->json.dim == 3 && out->json.scene.which != FMB_PAIRS_LISTED;
+        out->world = (struct fmb_robot_world){&out->json.scene, out->json.links, path};
+        return true;
     }
     struct fmb_robot_options as_obstacle = *options;
     as_obstacle.srdf = NULL;
@@ -90,7 +84,7 @@ bool robot_world_read(const char *path, const struct fmb_robot_options *options,
         return false;
     }
     out->scene->owner.scene.ignored_count = 0;
-    out->world = (struct fmb_robot_world){.scene = &out->scene->owner.scene};
+    out->world = (struct fmb_robot_world){.scene = &out->scene->owner.scene, .name = path};
     return true;
 }
 

@@ -615,7 +615,7 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     cube='"shape": "box", "size": [1,1,1]'
     echo "{\"dim\": 3, \"bodies\": [{\"id\": 3, $cube}, {\"id\": 4, $cube}], \"pairs\": [[3,4]]}" > world.json
     refused 'world.json: "pairs" would leave out the robot' robot.urdf --with world.json
-    echo '{"dim": 2, "bodies": []}' > world.json
+    echo '{"dim": 2, "bodies": [{"id": 1, "shape": "box", "size": [1,1]}]}' > world.json
     refused 'world.json: expected a scene in 3D' robot.urdf --with world.json
     echo '{"dim": 3, "bodies": []} {"dim": 3, "bodies": []}' > world.json
     refused 'world.json: expected one scene, found a second one' robot.urdf --with world.json
@@ -702,9 +702,9 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
         {\"id\": 9, \"name\": \"c\", $cube, \"link\": \"arm\", \"velocity\": [0,0,1]}]}" > bad.json
     scene robot.urdf --with bad.json
     ended 2
-    said "fmb: body 7, a: the robot has no link 'hand'
-fmb: body 8: the robot has no link ''
-fmb: body 9, c: a body that a link carries has no velocity of its own"
+    said "fmb: bad.json: body 7, a: the robot has no link 'hand'
+fmb: bad.json: body 8: the robot has no link ''
+fmb: bad.json: body 9, c: a body that a link carries has no velocity of its own"
     echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, $cube, \"link\": \"arm\"}, {\"id\": 7, $cube, \"link\": \"base\"}]}" > bad.json
     refused 'bad.json: bodies[1].id: 7 is the id of bodies[0] already' robot.urdf --with bad.json
     echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, $cube, \"link\": 3}]}" > bad.json
