@@ -65,7 +65,7 @@ static void report_value(const struct joints *joints, size_t j, const struct joi
         snprintf(limits, sizeof limits, "is outside its limits, %s to %s%s",
                  number_or_inf(joint->limit[0], low), number_or_inf(joint->limit[1], high),
                  joint->type != ROBOT_PRISMATIC ? " radians" : "");
-    complain("%s%s%s: joint '%s'%s%s%s: %s %s%s", at->path, line, "", joint->name->name,
+    complain("%s%s: joint '%s'%s%s%s: %s %s%s", at->path, line, joint->name->name,
              follows ? " (a mimic of '" : "", follows ? joint->mimic_name : "", follows ? "')" : "",
              number_or_inf(at->value, value), limits, what);
 }

@@ -1,7 +1,6 @@
 #include "robot.h"
 
 #include "allocate.h"
-#include "complain.h"
 #include "escape.h"
 #include "turn.h"
 
@@ -11,26 +10,19 @@
 
 /* ---- Lines ---- */
 
-void robot_lines_add(struct robot_lines *lines, const char *place, const char *format, va_list list)
+void robot_say(struct robot_lines *lines, const char *format, ...)
 {
-    enum { LINE_MAX_BYTES = 8192 };
+    enum { LINE_MAX_BYTES = 16384 };
     char line[LINE_MAX_BYTES];
+    va_list list;
+    va_start(list, format);
     vsnprintf(line, sizeof line, format, list);
+    va_end(list);
     if (!lines->out && !(lines->out = open_memstream(&lines->text, &lines->size)))
         allocate_failed();
     else if (fflush(lines->out) == 0 && lines->size > 0)
         putc('\n', lines->out);
-    escape_text(lines->out, place);
-    fputs(*place ? ": " : "", lines->out);
     escape_text(lines->out, line);
-}
-
-void robot_say(struct robot_lines *lines, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    robot_lines_add(lines, "", format, list);
-    va_end(list);
 }
 
 const char *robot_lines_text(struct robot_lines *lines)
@@ -48,18 +40,23 @@ void robot_lines_clear(struct robot_lines *lines)
     *lines = (struct robot_lines){.out = NULL};
 }
 
+bool robot_refuse_list(struct robot *robot, const char *path, unsigned long line, const char *kind,
+                       const char *name, const char *format, va_list list)
+{
+    char text[ROBOT_TEXT_MAX];
+    vsnprintf(text, sizeof text, format, list);
+    if (robot->error_count++ < ROBOT_ERRORS_MAX)
+        robot_say(&robot->errors, "%s: line %lu%s%s%s%s%s: %s", path, line, kind ? ": " : "",
+                  kind ? kind : "", kind ? " '" : "", kind ? name : "", kind ? "'" : "", text);
+    return false;
+}
+
 bool robot_refuse(struct robot *robot, const char *path, unsigned long line, const char *kind,
                   const char *name, const char *format, ...)
 {
-    char place[COMPLAIN_PLACE_MAX];
     va_list list;
-    if (robot->error_count++ >= ROBOT_ERRORS_MAX)
-        return false;
-    const int length = snprintf(place, sizeof place, "%s: line %lu", path, line);
-    if (kind && length < COMPLAIN_PLACE_MAX)
-        snprintf(place + length, sizeof place - (size_t) length, ": %s '%s'", kind, name);
     va_start(list, format);
-    robot_lines_add(&robot->errors, place, format, list);
+    robot_refuse_list(robot, path, line, kind, name, format, list);
     va_end(list);
     return false;
 }

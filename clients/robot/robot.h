@@ -22,9 +22,7 @@ struct robot_lines {
     size_t size;
 };
 
-/* Appends "PLACE: TEXT" as one line; control characters are escaped. place: "": the text alone. */
-void robot_lines_add(struct robot_lines *lines, const char *place, const char *format,
-                     va_list list);
+/* Appends a line; control characters are escaped. */
 __attribute__((format(printf, 2, 3))) void robot_say(struct robot_lines *lines, const char *format,
                                                      ...);
 
@@ -103,10 +101,13 @@ void robot_clear(struct robot *robot);
 
 /* Adds an error; after ROBOT_ERRORS_MAX they are only counted. path: of the file. kind: "link" or
  * "joint", which has the name; NULL: neither. Returns false. */
-enum { ROBOT_ERRORS_MAX = 100 };
+enum { ROBOT_ERRORS_MAX = 100, ROBOT_TEXT_MAX = 8192 };
 __attribute__((format(printf, 6, 7))) bool robot_refuse(struct robot *robot, const char *path,
                                                         unsigned long line, const char *kind,
                                                         const char *name, const char *format, ...);
+
+bool robot_refuse_list(struct robot *robot, const char *path, unsigned long line, const char *kind,
+                       const char *name, const char *format, va_list list);
 
 /* Connects links and joints by their names, and sets order. whole: false if some were refused, and
  * only names are checked. Returns false after an error: they are not a tree. Called by

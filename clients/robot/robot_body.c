@@ -33,14 +33,12 @@ __attribute__((format(printf, 3, 4))) static bool refuse(const struct frames *fr
                                                          const struct robot_element *element,
                                                          const char *format, ...)
 {
-    enum { TEXT_MAX = 8192 };
-    char text[TEXT_MAX];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    robot_refuse_list(frames->robot, frames->robot->path, element->line, "link",
+                      frames->link->name->name, format, list);
     va_end(list);
-    return robot_refuse(frames->robot, frames->robot->path, element->line, "link",
-                        frames->link->name->name, "%s", text);
+    return false;
 }
 
 static void add_frame(struct frames *frames, const struct given_frame *given)

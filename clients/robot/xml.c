@@ -12,14 +12,13 @@
 
 void xml_refuse(struct xml_reader *reader, unsigned long line, const char *format, ...)
 {
-    char text[1024];
     va_list list;
     if (reader->failed)
         return;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    robot_refuse_list(reader->robot, reader->path, line, reader->kind, reader->within, format,
+                      list);
     va_end(list);
-    robot_refuse(reader->robot, reader->path, line, reader->kind, reader->within, "%s", text);
     reader->failed = reader->bad = true;
 }
 

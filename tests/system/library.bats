@@ -346,20 +346,25 @@ END
 <robot name="r"><link name="a"><collision><geometry><box size="0.5 1.5 2.5"/></geometry></collision>
 <collision><geometry><mesh filename="m.obj"/></geometry></collision></link></robot>
 END
+    echo '{"dim": 3, "bodies": [{"id": 1, "shape": "sphere", "radius": 0.5, "position": [0.5,1.5e0,0]}]}' > s.json
     cat > comma.c << 'END'
-#include <fmb_robot.h>
+#include <fmb_robot_flat.h>
 #include <locale.h>
 #include <stdio.h>
 int main(void)
 {
     struct fmb_robot *robot;
     struct fmb_robot_scene *scene;
+    struct fmb_robot_flat *flat;
     char text[8];
     if (!setlocale(LC_NUMERIC, "locale") || fmb_robot_read("robot.urdf", NULL, &robot) != 0) {
         puts(fmb_robot_why(robot));
         return 1;
     }
     snprintf(text, sizeof text, "%.1f", 0.5); /* the program's own locale holds after the call */
+    if (fmb_robot_flat_json("s.json", &flat) != 0 ||
+        ((const struct fmb_placement *) fmb_robot_flat_placements(flat))->position[1] != 1.5)
+        return 2;
     fmb_robot_scene(robot, NULL, 0, NULL, 0, &scene);
     const struct fmb_body *body = fmb_robot_scene_get(scene)->placements[0].body;
     return text[1] != ',' || body->frames[0].component[1][1] != 1.5 || body->frame_count != 2;
