@@ -509,7 +509,6 @@ struct clip_side {
  * how many they are. */
 struct clip_mean {
     lanes sum[1 + FMB_DIM_MAX], count;
-    lanes_mask good;
 };
 
 INLINE void add_to_mean(lanes_mask counts, lanes x, lanes *sum)
@@ -517,16 +516,22 @@ INLINE void add_to_mean(lanes_mask counts, lanes x, lanes *sum)
     *sum += lanes_select(counts, CHECK_GIVEN(x), lanes_of(0));
 }
 
-/* Adds the middles of the outer spans of a frame. */
+/* Adds the middles of the outer spans of a frame that are as certain as the limits on positions and
+ * times require. */
 INLINE void add_middles(const struct kernel_traits traits, const struct clip_wire *wire,
-                        const struct clip_side *side, struct clip_mean *out)
+                        const struct box_pair *box, const struct clip_side *side,
+                        struct clip_mean *out)
 {
     const struct clip_points *points = &side->points;
     for (int n = 0; n < wire->segments; n++) {
         const struct clip_span *outer = &side->spans.part[CLIP_OUTER][n];
         const struct clip_span *inner = &side->spans.part[CLIP_INNER][n];
         const int v = wire->from[n], d = wire->direction[n];
-        const lanes_mask counts = outer->from == outer->from;
+        const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
+        const bool is_path = traits.drifts && d == wire->directions - 1;
+        /* Not of no span, which is NAN. */
+        const lanes_mask counts = (lost * points->longest[d] <= box->whole) &
+                                  (is_path ? lost <= CLIP_TIME : is_not((lanes_mask){0}));
         const lanes twice = outer->from + outer->to;
         for (int axis = 0; axis < traits.dim; axis++)
             add_to_mean(counts, points->vertex[axis][v] + twice * (0.5 * points->along[axis][d]),
@@ -534,12 +539,8 @@ INLINE void add_middles(const struct kernel_traits traits, const struct clip_wir
         add_to_mean(counts, lanes_of(1), &out->count);
         if (!traits.drifts)
             continue;
-        const bool is_path = d == wire->directions - 1;
         const lanes edge = lanes_of(v < wire->vertices ? -1 : 1);
         add_to_mean(counts, is_path ? edge + twice : edge, &out->sum[0]);
-        const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
-        if (is_path)
-            out->good &= is_not(counts) | (lost <= CLIP_TIME);
     }
 }
 
@@ -734,7 +735,7 @@ INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct cl
 }
 
 /* Adds the crossing to the reach of A: to the outer one where it is possible, to the inner one
- * where it is certain; and to the mean where it is certain, if mean is not NULL. Returns the lanes
+ * where it is certain; to the mean where its time is known too. Returns the lanes
  * in which it is possible, but not certain, or has a position that is not known to within
  * box->whole. */
 INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct clip_crossing *from,
@@ -745,6 +746,7 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
     const lanes_mask possible = is_possible(traits, from, m, n, &at);
     const lanes_mask certain = possible & from->known & (at.in_s >= from->error_s) &
                                (at.in_r >= from->error_r) & (at.in_t >= from->error_t);
+    const lanes_mask counted = certain & from->timed;
     for (int axis = 0; axis < 3; axis++) {
         const lanes part =
             CHECK_GIVEN(at.s) * from->along[axis] + CHECK_GIVEN(at.t) * from->travel[axis];
@@ -758,12 +760,11 @@ INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct c
             *above = lanes_max(lanes_select(counts, half + middle, none), *above);
         }
         if (mean)
-            add_to_mean(certain, middle, &mean->sum[1 + axis]);
+            add_to_mean(counted, middle, &mean->sum[1 + axis]);
     }
     if (mean) {
-        add_to_mean(certain, at.t * from->inverse, &mean->sum[0]);
-        add_to_mean(certain, lanes_of(1), &mean->count);
-        mean->good &= is_not(certain) | from->timed;
+        add_to_mean(counted, at.t * from->inverse, &mean->sum[0]);
+        add_to_mean(counted, lanes_of(1), &mean->count);
     }
     return possible & is_not(certain);
 }
@@ -856,7 +857,7 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
     if (traits.dim == 3 && traits.drifts)
         uncertain |= add_crossings(pair, traits, places, box, products, &good, reach, mean);
     for (int which = 0; which < 2 && mean; which++)
-        add_middles(traits, &wire[which], &side[which], mean);
+        add_middles(traits, &wire[which], box, &side[which], mean);
     for (int bound = 0; bound < (lanes_mask_bits(uncertain & good) ? 2 : 1); bound++)
         for (int which = 0; which < 2; which++)
             add_reach(traits, &wire[which], &side[which].points, side[which].spans.part[bound],
@@ -872,8 +873,6 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
             CHECK_BOUND(BOX_PLACE_ROUNDING_EXACT, is_not(box->exact), *inner, box->slack[axis]);
         }
     good &= are_near(traits, box, ends);
-    if (mean)
-        mean->good &= good & is_not(uncertain);
     return good;
 }
 

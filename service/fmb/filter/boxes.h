@@ -11,7 +11,7 @@ static void put_point(const struct kernel_traits traits, double duration, lanes_
     const lanes inverse = (is_doubled(traits) ? 0.5 : 1.0) / mean->count;
     const lanes share = 0.5 + 0.5 * (mean->sum[0] / mean->count), whole = lanes_of(duration);
     const lanes time = lanes_min(lanes_max(share * duration, lanes_of(0)), whole);
-    good &= aligned | (mean->good & (mean->count > 0));
+    good &= aligned | (mean->count > 0);
     point[0] = lanes_select(good, traits.drifts ? time : lanes_of(0), lanes_of(NAN));
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         const lanes middle = 0.5 * box[0][axis] + 0.5 * box[1][axis];
@@ -30,7 +30,7 @@ static void find_box(const struct kernel_traits traits, const struct clip_wire w
     const bool clips = !lanes_all(aligned | is_not(pair->in_range));
     struct box_pair of_pair;
     struct box_ends ends;
-    struct clip_mean mean = {.good = is_not((lanes_mask){0})};
+    struct clip_mean mean = {.count = lanes_of(0)};
     places->exact = (lanes_mask){0};
     if (clips)
         set_exact(traits, frame, pair, places);

@@ -115,15 +115,19 @@ static bool try_subset(struct integer_simplex *simplex, const int member[], int 
 static bool reduce(struct integer_simplex *simplex)
 {
     const int last = simplex->count - 1;
-    const unsigned mask = simplex->subset++;
+    const unsigned mask = simplex->guessed ? (1U << last) - 1 : simplex->subset++;
     struct integer_corner *corner[INTEGER_CORNERS + 1];
     int member[INTEGER_CORNERS] = {last}, count = 1;
     assert(mask < 1U << last);
     for (int i = 0; i < last; i++)
         if (mask >> i & 1)
             member[count++] = i;
-    if (!try_subset(simplex, member, count))
+    if (!try_subset(simplex, member, count)) {
+        simplex->count = simplex->guessed ? 1 : simplex->count;
+        simplex->guessed = false;
         return false;
+    }
+    simplex->guessed = false;
     memcpy(corner, simplex->corner, sizeof corner);
     simplex->count = count;
     for (int i = 0; i < count; i++)
@@ -142,6 +146,16 @@ void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
     support(context, toward, simplex->corner[0]);
     simplex->count = 1;
     simplex->subset = 0;
+    simplex->guessed = false;
+}
+
+void integer_simplex_begin_near(struct integer_simplex *simplex, int count)
+{
+    for (int i = 0; i <= INTEGER_CORNERS; i++)
+        simplex->corner[i] = &simplex->pool[i];
+    simplex->count = count;
+    simplex->subset = 0;
+    simplex->guessed = true;
 }
 
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context)

@@ -25,6 +25,7 @@ struct integer_corner {
 struct integer_simplex {
     int count;
     unsigned subset; /* bits: the subset of the corners to be tried next */
+    bool guessed;    /* no subset was tried yet, and the nearest point may be inside all corners */
     bool zero;       /* the point is the origin */
     struct integer_corner pool[INTEGER_CORNERS + 1];
     struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first count: the simplex */
@@ -43,9 +44,12 @@ typedef void integer_support(void *context, mpz_t n[3], struct integer_corner *o
  * support at most once. integer_simplex_step() returns whether the point is found.
  *
  * In:  toward   any direction: the search starts from the corner with the least toward . p
- *      context  passed to support */
+ *      context  passed to support
+ *      count    at least 1: simplex->pool has so many vertices of P, and the nearest point is
+ *               expected inside of them */
 void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
                            integer_support *support, void *context);
+void integer_simplex_begin_near(struct integer_simplex *simplex, int count);
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context);
 
 /* out := n / |n|, rounded; numbers 2^100 times smaller than the largest become 0. In: not 0. */

@@ -1094,12 +1094,8 @@ static void height_step(struct programs *e)
  * The point of D nearest to the origin is sum w_i x_i / total, with the weights of
  * integer_simplex.h, whose corners are points of D, not multiplied by QUARTERS. */
 
-static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out)
+static void set_corner(struct programs *e, struct support_column column, struct integer_corner *out)
 {
-    struct programs *e = context;
-    for (int axis = 0; axis < 3; axis++)
-        mpz_neg(e->normal[1][axis], n[axis]);
-    const struct support_column column = price_difference(e, false);
     mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
     memcpy(out->bits, column.vertex, sizeof out->bits);
     out->late = column.end;
@@ -1110,6 +1106,13 @@ static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out
     }
 }
 
+static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out)
+{
+    struct programs *e = context;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_neg(e->normal[1][axis], n[axis]);
+    set_corner(e, price_difference(e, false), out);
+}
 /* Sets the proof from the nearest point, and the verdict from its distance and the sum of the
  * radii.
  */
@@ -1228,18 +1231,25 @@ static struct programs *begin(const struct support_pair *pair, bool nearest)
     return e;
 }
 
-struct programs *programs_begin_nearest(const struct support_pair *pair, bool late)
+struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
+                                        const struct support_column *first, unsigned count)
 {
     struct programs *e = begin(pair, true);
     double toward[FMB_DIM_MAX];
     int exponent;
     e->ends[0] = !late;
     e->ends[1] = late || (pair->drifts && pair->frames->duration > 0);
+    e->stage = NEARING;
+    if (count > 0) {
+        for (unsigned i = 0; i < count; i++)
+            set_corner(e, first[i], &e->simplex.pool[i]);
+        integer_simplex_begin_near(&e->simplex, (int) count);
+        return e;
+    }
     support_toward(pair, toward);
     frexp(vec3_largest(toward), &exponent);
     for (int axis = 0; axis < 3; axis++)
         mpz_set_d(e->vector[axis], ldexp(toward[axis], 53 - exponent));
-    e->stage = NEARING;
     integer_simplex_begin(&e->simplex, e->vector, nearest_corner, e);
     return e;
 }

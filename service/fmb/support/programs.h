@@ -54,8 +54,11 @@ struct programs *programs_begin(const struct support_pair *pair, unsigned want,
  * contact and no box; its verdict is that of the pair if a frame has a radius.
  *
  * In:  pair  set; must outlive the decision
- *      late  D is restricted to the end of the window */
-struct programs *programs_begin_nearest(const struct support_pair *pair, bool late);
+ *      late  D is restricted to the end of the window
+ *      first [count], count at most 4: points of D, or of D at the end of the window, in whose hull
+ *            the nearest point is expected */
+struct programs *programs_begin_nearest(const struct support_pair *pair, bool late,
+                                        const struct support_column *first, unsigned count);
 
 /* Performs one step. Returns whether the decision is complete. */
 bool programs_step(struct programs *programs);

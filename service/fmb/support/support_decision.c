@@ -38,6 +38,22 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
     support_pair_set(&out->frames, &out->pair);
 }
 
+/* Copies the points of D that the search found, if there was one. Returns how many. */
+static unsigned columns_of(const struct support_simplex *simplex,
+                           struct support_column out[FMB_DIM_MAX + 1])
+{
+    for (unsigned i = 0; i < simplex->count; i++)
+        out[i] = simplex->vertex[i].column;
+    return simplex->count;
+}
+
+static struct programs *begin_nearest(const struct support_decision *decision)
+{
+    struct support_column first[FMB_DIM_MAX + 1];
+    const unsigned count = decision->searched ? columns_of(&decision->nearest.simplex, first) : 0;
+    return programs_begin_nearest(&decision->pair, false, first, count);
+}
+
 /* Sets the point of a pair in contact, if it is wanted: by doubles if these prove it, else by the
  * programs, which it begins. Returns whether the decision is complete. */
 static bool begin_point(struct support_decision *decision, struct fmb_answer *answer)
@@ -45,9 +61,12 @@ static bool begin_point(struct support_decision *decision, struct fmb_answer *an
     answer->has_point = decision->want & FMB_WANT_POINT && answer->verdict != FMB_SEPARATED;
     if (!answer->has_point)
         return true;
+    if (decision->searched &&
+        support_common_point(&decision->pair, &decision->nearest, answer->point))
+        return true;
     decision->pointing = true;
     if (!decision->bounded)
-        decision->programs = programs_begin_nearest(&decision->pair, false);
+        decision->programs = begin_nearest(decision);
     return false;
 }
 
@@ -137,7 +156,7 @@ static bool round_begin(struct support_decision *decision, enum fmb_verdict core
         return begin_rest(decision, answer);
     if (!decision->bounded) {
         decision->by_nearest = true;
-        decision->programs = programs_begin_nearest(&decision->pair, false);
+        decision->programs = begin_nearest(decision);
     }
     return false;
 }
@@ -203,9 +222,8 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
         const bool guessed =
             answer->verdict == 0 && out->searched && support_guess_begin(pair, &guess);
         const struct support_simplex *simplex = guessed ? &guess.simplex : &nearest->simplex;
-        for (unsigned i = 0; i < simplex->count; i++)
-            first[i] = simplex->vertex[i].column;
-        out->programs = programs_begin(pair, left, first, simplex->count);
+        const unsigned count = columns_of(simplex, first);
+        out->programs = programs_begin(pair, left, first, count);
     }
     return false;
 }

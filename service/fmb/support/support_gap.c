@@ -172,6 +172,71 @@ static bool set_gap(const struct support_pair *pair, struct support_gap *out)
     return out->far <= 0x1p900;
 }
 
+/* ---- Point of contact ----
+ *
+ * The weights of a search give points a and b of the cores at one time, x = b - a a point of D.
+ *
+ * Let the distance of x from the origin be at most the sum R of the radii. The point a + (b - a)
+ * r_A / R is within r_A of a and within r_B of b.
+ *
+ * Otherwise let the origin be inside the simplex of the search, at least h from its facets. The
+ * simplex contains -x h / |x|, with other weights. The mean of both, with |x| / (h + |x|) of the
+ * other weights, gives the origin: a point that both cores contain at one time. This part is less
+ * than |x| / h. So the point is at most that part of twice the reach of a core, and of its way over
+ * the window, from a or b, and the time that part of the window from theirs. */
+
+/* Returns at least the greatest distance, along an axis, of two vertices of frame f in the simplex
+ * of a search; late: how far it moves over the window. */
+static double spread_of(const struct support_gap *gap, const struct support_simplex *simplex, int f)
+{
+    double ends[2][FMB_DIM_MAX], spread = 0;
+    for (unsigned c = 0; c < simplex->count; c++) {
+        double at[FMB_DIM_MAX];
+        support_place(&gap->pair->view[f], simplex->vertex[c].column.vertex[f], at);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            ends[0][axis] = c == 0 ? at[axis] : fmin(ends[0][axis], at[axis]);
+            ends[1][axis] = c == 0 ? at[axis] : fmax(ends[1][axis], at[axis]);
+        }
+    }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        spread = fmax(spread, ends[1][axis] - ends[0][axis] + fabs(gap->displacement[f][axis]));
+    return spread + support_witness_error(gap);
+}
+
+/* Of the window; fmb.h allows 1e-12, and the rounding of seconds is left. */
+static const double time_limit = 0.9e-12;
+
+bool support_common_point(const struct support_pair *pair, const struct support_nearest *nearest,
+                          double point[1 + FMB_DIM_MAX])
+{
+    struct support_gap gap;
+    struct fmb_gap at;
+    double off = 0, share = 0;
+    if (!set_gap(pair, &gap))
+        return false;
+    const double apart = support_distance_above(pair, nearest);
+    if (pair->rounded && apart <= pair->radius[0]) {
+        const double a = 0.5 * pair->frames->a.frame->radius;
+        share = a / (a + 0.5 * pair->frames->b.frame->radius);
+    } else {
+        const double part = apart / support_simplex_depth(pair, &nearest->simplex);
+        const double spread[2] = {spread_of(&gap, &nearest->simplex, 0),
+                                  spread_of(&gap, &nearest->simplex, 1)};
+        share = spread[0] > spread[1];
+        off = part * fmin(spread[0], spread[1]);
+        if (!(part <= time_limit))
+            return false;
+    }
+    if (!(off + support_witness_error(&gap) <= gap.tight))
+        return false;
+    support_witness(&gap, nearest, &at);
+    point[0] = at.time + 0.0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        point[1 + axis] =
+            at.witness[0][axis] + share * (at.witness[1][axis] - at.witness[0][axis]) + 0.0;
+    return true;
+}
+
 /* Searches for the point of D nearest to the origin, of a separated pair up to farthest. */
 static void search(const struct support_gap *gap, enum fmb_verdict verdict, double farthest,
                    struct support_nearest *out)

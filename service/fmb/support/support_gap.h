@@ -26,6 +26,9 @@ struct support_gap {
     double scale; /* the grid of a mesh: a power of two */
 };
 
+/* Returns how far the witness points are from points of the frames at their time, both together. */
+double support_witness_error(const struct support_gap *gap);
+
 /* Sets the witness points of a point of D, their time, and the upper bound of the distance. */
 void support_witness(const struct support_gap *gap, const struct support_nearest *nearest,
                      struct fmb_gap *out);
@@ -72,6 +75,11 @@ struct support_placed {
 void support_placed_begin(const struct support_pair *pair, struct support_placed *out);
 bool support_placed_step(struct support_placed *placed, int count);
 void support_placed_end(struct support_placed *placed);
+
+/* Sets point, as fmb_answer.point, of a pair in contact. nearest: the result of a search. Returns
+ * false if doubles do not prove it within the limits of fmb.h. */
+bool support_common_point(const struct support_pair *pair, const struct support_nearest *nearest,
+                          double point[1 + FMB_DIM_MAX]);
 
 /* The gap of a pair in the order of support_order(), in steps of less than a millisecond.
  *

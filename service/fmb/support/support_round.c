@@ -45,7 +45,8 @@ static double point_of(const struct support_nearest *nearest, double out[FMB_DIM
     return total;
 }
 
-static double upper_distance(const struct support_pair *pair, const struct support_nearest *nearest)
+double support_distance_above(const struct support_pair *pair,
+                              const struct support_nearest *nearest)
 {
     double at[FMB_DIM_MAX];
     const double total = point_of(nearest, at);
@@ -64,7 +65,7 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
 {
     if (nearest->outcome == GAP_FAR)
         return FMB_SEPARATED;
-    if (cores == FMB_OVERLAPPING || upper_distance(pair, nearest) < pair->radius[0])
+    if (cores == FMB_OVERLAPPING || support_distance_above(pair, nearest) < pair->radius[0])
         return FMB_OVERLAPPING;
     if (nearest->outcome != GAP_KNOWN || nearest->least < pair->radius[1])
         return 0;
@@ -224,7 +225,7 @@ static void begin_slice(struct support_round_times *times, double time)
 {
     times->frames.duration = time;
     support_pair_set(&times->frames, &times->sliced);
-    times->programs = programs_begin_nearest(&times->sliced, true);
+    times->programs = programs_begin_nearest(&times->sliced, true, NULL, 0);
 }
 
 /* Begins the search for an end whose time is not known. */

@@ -45,6 +45,11 @@ struct programs;
 enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb_verdict cores,
                                        const struct support_nearest *nearest);
 
+/* Returns an upper bound of the distance of D from the origin, that of the point that a search
+ * found; INFINITY if there is none. */
+double support_distance_above(const struct support_pair *pair,
+                              const struct support_nearest *nearest);
+
 /* Returns a distance for support_search(): frames whose cores are certainly farther apart are
  * separated. */
 double support_round_far(const struct support_pair *pair);

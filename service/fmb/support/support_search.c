@@ -68,9 +68,10 @@ void support_centre(const struct support_pair *pair, double out[FMB_DIM_MAX])
 
 #define SUPPORT_DETERMINANT 1.2 /* as above */
 
-/* Returns the sign of the determinant of dim points, 0 if it is not certain. */
-static int sign_of(const struct support_pair *pair,
-                   const struct support_vertex *const p[FMB_DIM_MAX])
+/* Returns the determinant of dim points, less its error: nearer to 0 than the exact one, with its
+ * sign; 0 if that is not certain. */
+static double determinant_of(const struct support_pair *pair,
+                             const struct support_vertex *const p[FMB_DIM_MAX])
 {
     const double e = pair->error;
     double length[FMB_DIM_MAX], value, bound;
@@ -87,7 +88,15 @@ static int sign_of(const struct support_pair *pair,
     }
     bound = SUPPORT_DETERMINANT * e * bound + 0x1p-900;
     CHECK_BOUND(SUPPORT_DETERMINANT, false, value, bound);
-    return value > bound ? 1 : value < -bound ? -1 : 0;
+    return value > bound ? value - bound : value < -bound ? value + bound : 0;
+}
+
+/* The dim vertices of a facet: all but one, in order. */
+static void set_facet(const struct support_simplex *simplex, int dim, int omitted,
+                      const struct support_vertex *out[FMB_DIM_MAX])
+{
+    for (int i = 0; i < dim; i++)
+        out[i] = &simplex->vertex[i < omitted ? i : i + 1];
 }
 
 /* Whether the origin is certainly inside the simplex. Without vertex i, the determinants of the
@@ -98,14 +107,48 @@ bool support_simplex_contains_origin(const struct support_pair *pair,
     int all = 0;
     for (int omitted = 0; omitted <= pair->dim; omitted++) {
         const struct support_vertex *p[FMB_DIM_MAX] = {NULL};
-        for (int i = 0; i < pair->dim; i++)
-            p[i] = &simplex->vertex[i < omitted ? i : i + 1];
-        const int sign = (omitted % 2 ? -1 : 1) * sign_of(pair, p);
+        set_facet(simplex, pair->dim, omitted, p);
+        const double determinant = determinant_of(pair, p);
+        const int sign = (omitted % 2 ? -1 : 1) * ((determinant > 0) - (determinant < 0));
         if (sign == 0 || (all != 0 && sign != all))
             return false;
         all = sign;
     }
     return true;
+}
+
+/* Returns at least the area of a facet in 3D, twice, or its length in 2D. Each edge is off by 2 e,
+ * and rounded by far less, so that their cross product is off by 2 e (|x| + |y|) + 4 e^2 for edges
+ * x and y, and rounded by less than e / 4 of their lengths, since e >= 32 u |x| / 2. */
+static double size_of_facet(const struct support_pair *pair,
+                            const struct support_vertex *const p[FMB_DIM_MAX])
+{
+    const double e = pair->error;
+    double edge[2][FMB_DIM_MAX], normal[FMB_DIM_MAX], length[2];
+    for (int i = 0; i + 1 < pair->dim; i++) {
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            edge[i][axis] = p[i + 1]->at[axis] - p[0]->at[axis];
+        length[i] = sqrt(vec3_dot(edge[i], edge[i]));
+    }
+    if (pair->dim == 2)
+        return length[0] + 3 * e;
+    vec3_cross(edge[0], edge[1], normal);
+    return sqrt(vec3_dot(normal, normal)) + 3 * e * (length[0] + length[1] + 3 * e);
+}
+
+/* A facet is the determinant of its points divided by its size from the origin. */
+double support_simplex_depth(const struct support_pair *pair, const struct support_simplex *simplex)
+{
+    double least = INFINITY;
+    if (simplex->count != (unsigned) pair->dim + 1 ||
+        !support_simplex_contains_origin(pair, simplex))
+        return 0;
+    for (int omitted = 0; omitted <= pair->dim; omitted++) {
+        const struct support_vertex *p[FMB_DIM_MAX] = {NULL};
+        set_facet(simplex, pair->dim, omitted, p);
+        least = fmin(least, fabs(determinant_of(pair, p)) / size_of_facet(pair, p));
+    }
+    return least * (1 - 0x1p-40);
 }
 
 void support_toward(const struct support_pair *pair, double out[FMB_DIM_MAX])

@@ -61,6 +61,11 @@ static inline double support_separating_distance(const struct support_pair *pair
 bool support_simplex_contains_origin(const struct support_pair *pair,
                                      const struct support_simplex *simplex);
 
+/* Returns a lower bound of the distance of the origin from the facets of a simplex that surely
+ * contains it; 0 for any other. */
+double support_simplex_depth(const struct support_pair *pair,
+                             const struct support_simplex *simplex);
+
 /* Sets the contact, or the box, of a pair that a simplex proves to overlap. Returns false if
  * doubles do not give it within the limits of fmb.h. In: a pair in the order of support_order(). */
 bool support_contact(const struct support_pair *pair, const struct support_simplex *simplex,

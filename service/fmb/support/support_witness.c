@@ -14,6 +14,12 @@
 /* Of the difference of the witness points, relative to "far". */
 #define SUPPORT_WITNESS 0x1p-47
 
+double support_witness_error(const struct support_gap *gap)
+{
+    const double slack = gap->pair->view[0].slack + gap->pair->view[1].slack;
+    return SUPPORT_WITNESS * gap->far + gap->late + slack + 0x1p-1000;
+}
+
 void support_witness(const struct support_gap *gap, const struct support_nearest *nearest,
                      struct fmb_gap *out)
 {
@@ -37,9 +43,7 @@ void support_witness(const struct support_gap *gap, const struct support_nearest
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         apart[axis] = out->witness[1][axis] - out->witness[0][axis];
-    const double slack = gap->pair->view[0].slack + gap->pair->view[1].slack;
-    const double error = SUPPORT_WITNESS * gap->far + gap->late + slack + 0x1p-1000;
     out->has_witness = true;
     out->time = late * gap->duration;
-    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + error) * (1 + 0x1p-49);
+    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + support_witness_error(gap)) * (1 + 0x1p-49);
 }
