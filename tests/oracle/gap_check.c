@@ -308,16 +308,15 @@ static bool fail(char *why, size_t size, const char *what)
     return false;
 }
 
-/* Separated pairs have witness points. Those that overlap without relative motion may. */
+/* Separated pairs have witness points, and so do those that overlap without relative motion. */
 static bool witness_is_due(const struct pair *pair, enum fmb_verdict verdict,
                            const struct fmb_gap *gap)
 {
     bool moving = false;
     for (int axis = 0; axis < pair->a.body->dim; axis++)
         moving = moving || pair->a.velocity[axis] != pair->b.velocity[axis];
-    if (verdict == FMB_OVERLAPPING && !(moving && pair->duration > 0))
-        return true;
-    return gap->has_witness == (verdict == FMB_SEPARATED);
+    const bool rests = !(moving && pair->duration > 0);
+    return gap->has_witness == (verdict == FMB_SEPARATED || (verdict == FMB_OVERLAPPING && rests));
 }
 
 /* What does not depend on the frames. */
@@ -341,7 +340,7 @@ static bool check_form(const struct pair *pair, enum fmb_verdict verdict, const 
     return is_narrow(pair, gap) || fail(why, size, "too wide");
 }
 
-/* Whether no points of an overlap are given, or they are a deepest pair of these frames. */
+/* Whether points of an overlap, if they are given, are a deepest pair of these frames. */
 static bool deepest_holds(struct world *world, const struct pair *pair, const struct fmb_gap *gap)
 {
     mpq_t limit;

@@ -20,9 +20,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The limit on the width, relative to the largest coordinate; fmb.h states 1e-12. */
-static const double limit = 0.9e-12;
-
 /* ---- Order ---- */
 
 static int compare(const double *x, const double *y, int count)
@@ -197,7 +194,7 @@ bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, do
 
 bool gap_is_tight(const struct gap_pair *pair, const double bounds[2])
 {
-    return bounds[1] - bounds[0] <= limit * pair->least;
+    return bounds[1] - bounds[0] <= GAP_LIMIT * pair->least;
 }
 
 double gap_far_threshold(const struct fmb_prepared *a, const struct fmb_prepared *b,
@@ -218,10 +215,12 @@ static enum gap_outcome gap_in_doubles(const struct fmb_prepared *a, const struc
     memset(out, 0, sizeof *out);
     if (!gap_pair_set(a, b, duration, &pair))
         return GAP_UNSURE;
-    if (gap_axis_aligned(&pair, out) == GAP_KNOWN)
+    if (gap_axis_aligned(&pair, verdict, out) == GAP_KNOWN)
         return GAP_KNOWN;
-    const enum gap_outcome outcome = verdict == FMB_SEPARATED ? gap_distance(&pair, farthest, out)
-                                                              : gap_depth(&pair, verdict, out);
+    enum gap_outcome outcome = verdict == FMB_SEPARATED ? gap_distance(&pair, farthest, out)
+                                                        : gap_depth(&pair, verdict, out);
+    if (outcome == GAP_KNOWN && verdict == FMB_OVERLAPPING && !pair.drifts)
+        outcome = gap_deepest(&pair, out);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         out->direction[axis] += 0.0;
     return outcome;

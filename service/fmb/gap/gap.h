@@ -24,6 +24,8 @@
 #include "aabb.h"
 #include "vector.h"
 
+#include <math.h>
+
 /* GAP_UNSURE: not known within the limit. GAP_FAR: surely greater than farthest; nothing else is
  * known. */
 enum gap_outcome { GAP_UNSURE, GAP_KNOWN, GAP_FAR };
@@ -46,6 +48,10 @@ struct gap_pair {
     double far[2]; /* of each frame: bounds its coordinates over the window (gap_distance.c) */
     double least;  /* at most the largest coordinate of a vertex over the window */
 };
+
+/* Relative to that: the greatest width of an enclosure in doubles, and the greatest error of a
+ * deepest pair. fmb.h allows 1e-12. */
+#define GAP_LIMIT 0.9e-12
 
 /* Returns false if numbers are outside the range in which doubles can bound the gap. */
 bool gap_pair_set(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
@@ -90,7 +96,8 @@ bool gap_is_tight(const struct gap_pair *pair, const double bounds[2]);
 
 /* The gap of two axis-aligned cuboids, as accurately as doubles allow. Returns GAP_UNSURE for other
  * pairs, and if it requires a square root. */
-enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, struct fmb_gap *out);
+enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, enum fmb_verdict verdict,
+                                  struct fmb_gap *out);
 
 /* The gap of a separated pair. Returns GAP_FAR if it is surely greater than farthest, by more than
  * the width of an enclosure. */
@@ -100,6 +107,21 @@ enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest, stru
  * 0. */
 enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict,
                            struct fmb_gap *out);
+
+/* Sets the witness points of an overlapping pair that does not drift, whose bounds and direction
+ * are known: its deepest pair. Returns GAP_UNSURE if they are not within the limit of fmb.h. */
+enum gap_outcome gap_deepest(const struct gap_pair *pair, struct fmb_gap *out);
+
+/* Returns how far the witness points of a gap are from the deepest pair that the direction and the
+ * upper bound say: |a - b + bounds[1] direction|. */
+INLINE double gap_stray(const struct fmb_gap *gap)
+{
+    double way[FMB_DIM_MAX];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        way[axis] =
+            gap->witness[0][axis] - gap->witness[1][axis] + gap->bounds[1] * gap->direction[axis];
+    return sqrt(vec3_dot(way, way));
+}
 
 /* Returns a distance: frames that are farther apart have a gap that is surely greater than
  * farthest, as computed in doubles. In: a usable pair. */

@@ -3,7 +3,8 @@
  * Method. The frames are boxes, given by their ends. On each side of each axis their distance is
  * the difference of an end of each, negative if they overlap there. P is a box with these
  * distances, so that the greatest of them is minus the depth. If exactly one of them is positive,
- * it is the distance of the frames, and the witness points differ on this axis only.
+ * it is the distance of the frames. The witness points differ on the axis of the greatest distance
+ * only.
  *
  * Accuracy. Ends do not round: if one would, or a frame has an error, the pair is left to the other
  * steps. A difference is rounded outward if it rounds. */
@@ -34,11 +35,12 @@ static bool set_ends(const struct gap_pair *pair, int f, double ends[2][FMB_DIM_
     return true;
 }
 
-enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, struct fmb_gap *out)
+enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, enum fmb_verdict verdict,
+                                  struct fmb_gap *out)
 {
     double ends[2][2][FMB_DIM_MAX]; /* [frame] */
     struct interval best = {-INFINITY, -INFINITY};
-    int apart = 0;
+    int apart = 0, axis_of = 0, side_of = 0;
     if (pair->error != 0 || pair->drifts || pair->simplex[0] || pair->simplex[1] ||
         !set_ends(pair, 0, ends[0]) || !set_ends(pair, 1, ends[1]))
         return GAP_UNSURE;
@@ -56,6 +58,8 @@ enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, struct fmb_gap *o
             if (by.low <= best.low)
                 continue;
             best.low = by.low;
+            axis_of = axis;
+            side_of = side;
             memset(out->direction, 0, sizeof out->direction);
             out->direction[axis] = side ? -1 : 1;
         }
@@ -64,8 +68,11 @@ enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, struct fmb_gap *o
         return GAP_UNSURE;
     out->bounds[0] = best.low;
     out->bounds[1] = best.high;
-    out->has_witness = apart == 1;
+    out->has_witness = verdict != FMB_TOUCHING;
     if (!out->has_witness)
         memset(out->witness, 0, sizeof out->witness);
+    else if (apart == 0)
+        for (int side = 0; side < 2; side++)
+            out->witness[side][axis_of] = ends[side][side == side_of][axis_of] + 0.0;
     return GAP_KNOWN;
 }

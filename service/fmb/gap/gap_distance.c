@@ -82,6 +82,11 @@ static void support(const void *context, const double n[3], struct gap_corner *o
 
 /* ---- Bounds ---- */
 
+static double witness_error(const struct gap_pair *pair)
+{
+    return pair->error + GAP_WITNESS_ROUNDING * (pair->far[0] + pair->far[1]);
+}
+
 static void set_witness(const struct gap_pair *pair, const struct gap_simplex *simplex,
                         struct fmb_gap *out)
 {
@@ -111,10 +116,9 @@ static void set_witness(const struct gap_pair *pair, const struct gap_simplex *s
         CHECK_BOUND(GAP_WITNESS_ROUNDING, false,
                     (out->witness[f][0] + out->witness[f][1]) + out->witness[f][2],
                     GAP_WITNESS_ROUNDING * pair->far[f]);
-    const double error = pair->error + GAP_WITNESS_ROUNDING * (pair->far[0] + pair->far[1]);
     gap_subtract(out->witness[1], out->witness[0], apart);
     out->has_witness = true;
-    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + error) * (1 + 0x1p-49);
+    out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + witness_error(pair)) * (1 + 0x1p-49);
 }
 
 FLATTEN enum gap_outcome gap_distance(const struct gap_pair *pair, double farthest,
@@ -135,4 +139,21 @@ FLATTEN enum gap_outcome gap_distance(const struct gap_pair *pair, double farthe
     out->bounds[0] = f - error;
     set_witness(pair, &simplex, out);
     return gap_is_tight(pair, out->bounds) ? GAP_KNOWN : GAP_UNSURE;
+}
+
+/* A translation of b by the depth along the direction brings the origin to the boundary of P. The
+ * point of P next to it is then 0 up to rounding, and its weights give the deepest pair. */
+FLATTEN enum gap_outcome gap_deepest(const struct gap_pair *pair, struct fmb_gap *out)
+{
+    const double upper = out->bounds[1], close = 0x1p-47 * pair->reach;
+    struct gap_pair moved = *pair;
+    struct gap_simplex simplex;
+    double direction[3], f;
+    for (int axis = 0; axis < 3; axis++)
+        moved.offset[axis] -= upper * out->direction[axis];
+    gap_nearest(&moved, support, pair->dim, out->direction, close, INFINITY, &simplex, direction,
+                &f);
+    set_witness(pair, &simplex, out);
+    out->bounds[1] = upper;
+    return gap_stray(out) + witness_error(pair) <= GAP_LIMIT * pair->least ? GAP_KNOWN : GAP_UNSURE;
 }

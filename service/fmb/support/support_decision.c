@@ -58,9 +58,9 @@ static struct programs *begin_nearest(const struct support_decision *decision)
  * programs, which it begins. Returns whether the decision is complete. */
 static bool begin_point(struct support_decision *decision, struct fmb_answer *answer)
 {
-    answer->has_point = decision->want & FMB_WANT_POINT && answer->verdict != FMB_SEPARATED;
-    if (!answer->has_point)
+    if (!(decision->want & FMB_WANT_POINT) || answer->verdict == FMB_SEPARATED)
         return true;
+    answer->has_point = true;
     if (decision->searched &&
         support_common_point(&decision->pair, &decision->nearest, answer->point))
         return true;

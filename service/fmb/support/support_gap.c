@@ -88,9 +88,16 @@ static enum gap_outcome distance(const struct support_gap *gap,
 
 /* ---- Distance on the grid ---- */
 
+/* D translated by -at. */
+struct translated {
+    const struct support_gap *gap;
+    const double *at;
+};
+
 static void grid_support(void *context, mpz_t n[3], struct integer_corner *out)
 {
-    const struct support_gap *gap = context;
+    const struct translated *of = context;
+    const struct support_gap *gap = of->gap;
     double direction[FMB_DIM_MAX];
     struct support_vertex vertex;
     integer_direction(n, direction);
@@ -98,7 +105,7 @@ static void grid_support(void *context, mpz_t n[3], struct integer_corner *out)
     memcpy(out->bits, vertex.column.vertex, sizeof out->bits);
     out->late = vertex.column.end;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        mpz_set_d(out->at[axis], vertex.at[axis] * gap->scale);
+        mpz_set_d(out->at[axis], (vertex.at[axis] - of->at[axis]) * gap->scale);
 }
 
 /* Finds a direction in which the distance is 0, up to the width of an enclosure. */
@@ -111,32 +118,76 @@ static void set_direction(const struct support_gap *gap, struct fmb_gap *out)
     support_depth_end(&depth, out);
 }
 
-/* The point of D nearest to the origin, with every vertex rounded to the grid. If that is the
- * origin, the depth gives the direction. */
-static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
+/* Finds the point of D nearest to a point, with every vertex rounded to the grid. Sets its
+ * direction from there. Returns false if it is that point. */
+static bool nearest_on_grid(const struct support_gap *gap, const double at[FMB_DIM_MAX],
+                            struct support_nearest *out)
 {
+    struct translated of = {gap, at};
     struct integer_simplex simplex;
-    struct support_nearest nearest;
     integer_simplex_each(&simplex, mpz_init);
     mpz_set_ui(simplex.other[0], 1);
-    integer_simplex_begin(&simplex, simplex.other, grid_support, (void *) gap);
-    while (!integer_simplex_step(&simplex, grid_support, (void *) gap))
+    integer_simplex_begin(&simplex, simplex.other, grid_support, &of);
+    while (!integer_simplex_step(&simplex, grid_support, &of))
         ;
-    nearest.simplex.count = (unsigned) simplex.count;
+    out->simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
         const struct integer_corner *corner = simplex.corner[c];
-        nearest.simplex.vertex[c].column =
+        out->simplex.vertex[c].column =
             (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
-        nearest.weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
+        out->weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
     }
-    if (simplex.zero)
-        set_direction(gap, out);
-    else
+    const bool apart = !simplex.zero;
+    if (apart)
         integer_direction(simplex.normal, out->direction);
+    integer_simplex_each(&simplex, mpz_clear);
+    return apart;
+}
+
+/* The point of D nearest to the origin. If that is the origin, the depth gives the direction. */
+static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
+{
+    static const double origin[FMB_DIM_MAX];
+    struct support_nearest nearest;
+    if (nearest_on_grid(gap, origin, &nearest))
+        memcpy(out->direction, nearest.direction, sizeof out->direction);
+    else
+        set_direction(gap, out);
     set_lower(gap, out);
     support_witness(gap, &nearest, out);
-    integer_simplex_each(&simplex, mpz_clear);
     return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
+}
+
+/* ---- Deepest pair ---- */
+
+/* Whether the witness points are the deepest pair, within the limit of fmb.h. */
+static bool is_deepest(const struct support_gap *gap, const struct fmb_gap *out)
+{
+    return gap_stray(out) + support_witness_error(gap) <= gap->tight;
+}
+
+/* Sets the witness points of a pair that overlaps and does not drift, whose bounds and direction
+ * are known: the depth along the direction is a point of the boundary of D, and the point of D next
+ * to it is that point, up to rounding. bounded: the grid, which allocates, is not used. */
+static enum gap_outcome set_deepest(const struct support_gap *gap, bool bounded,
+                                    struct fmb_gap *out)
+{
+    const double upper = out->bounds[1];
+    struct support_nearest nearest;
+    double at[FMB_DIM_MAX];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        at[axis] = upper * out->direction[axis];
+    support_search_near(gap->pair, at, out->direction, &nearest);
+    support_witness(gap, &nearest, out);
+    out->bounds[1] = upper;
+    if (is_deepest(gap, out))
+        return GAP_KNOWN;
+    if (bounded)
+        return GAP_UNSURE;
+    nearest_on_grid(gap, at, &nearest);
+    support_witness(gap, &nearest, out);
+    out->bounds[1] = upper;
+    return is_deepest(gap, out) ? GAP_KNOWN : GAP_UNSURE;
 }
 
 /* ---- Pairs ---- */
@@ -245,22 +296,37 @@ static void search(const struct support_gap *gap, enum fmb_verdict verdict, doub
     support_search(gap->pair, verdict != FMB_SEPARATED ? INFINITY : fmax(far, near), out);
 }
 
-/* bounded: the grid, which allocates, is not used. */
-static enum gap_outcome solve_distance(const struct support_gap *gap,
-                                       const struct support_nearest *nearest, bool bounded,
-                                       struct fmb_gap *out)
+/* Whether a pair with this verdict has a deepest pair of points. */
+static bool has_deepest(const struct support_pair *pair, enum fmb_verdict verdict)
 {
-    const enum gap_outcome outcome = distance(gap, nearest, out);
-    return outcome == GAP_UNSURE && !bounded ? distance_on_grid(gap, out) : outcome;
+    return verdict == FMB_OVERLAPPING && !pair->drifts;
 }
 
-static enum gap_outcome end_depth(struct support_depth *depth, enum fmb_verdict verdict,
-                                  struct fmb_gap *out)
+/* In: verdict, of the pair; bounded: the grid, which allocates, is not used. */
+static enum gap_outcome solve_distance(const struct support_gap *gap,
+                                       const struct support_nearest *nearest,
+                                       enum fmb_verdict verdict, bool bounded, struct fmb_gap *out)
 {
+    const bool deepest = has_deepest(gap->pair, verdict);
+    enum gap_outcome outcome = distance(gap, nearest, out);
+    if (outcome == GAP_KNOWN && deepest && !is_deepest(gap, out))
+        outcome = GAP_UNSURE;
+    if (outcome == GAP_UNSURE && !bounded)
+        outcome = distance_on_grid(gap, out);
+    return outcome == GAP_KNOWN && deepest && !is_deepest(gap, out) ? GAP_UNSURE : outcome;
+}
+
+/* In: the verdicts of the cores and of the pair; bounded: as above. */
+static enum gap_outcome end_depth(struct support_depth *depth, enum fmb_verdict cores,
+                                  enum fmb_verdict verdict, bool bounded, struct fmb_gap *out)
+{
+    const struct support_gap *gap = depth->gap;
     memset(out, 0, sizeof *out);
     const bool known = support_depth_end(depth, out);
-    if (verdict == FMB_TOUCHING)
+    if (cores == FMB_TOUCHING)
         out->bounds[0] = out->bounds[1] = 0;
+    if (known && has_deepest(gap->pair, verdict))
+        return set_deepest(gap, bounded, out);
     return known ? GAP_KNOWN : GAP_UNSURE;
 }
 
@@ -282,7 +348,7 @@ static enum gap_outcome complete(enum gap_outcome outcome, bool swapped, struct 
  * witness point, and a bound, by less than 2^-1074. */
 static void scale_lengths(struct fmb_gap *gap, int exponent)
 {
-    const bool separated = gap->has_witness;
+    const bool separated = gap->bounds[1] > 0;
     for (int f = 0; f < 2; f++)
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             gap->witness[f][axis] = ldexp(gap->witness[f][axis], exponent);
@@ -302,16 +368,16 @@ enum { RAISED_AT_ONCE = 128, PLACED_AT_ONCE = 128 };
 
 /* In doubles, a depth in one step. *late: it takes more. */
 static enum gap_outcome solve_at_once(const struct support_gap *gap,
-                                      const struct support_nearest *nearest,
+                                      const struct support_nearest *nearest, enum fmb_verdict cores,
                                       enum fmb_verdict verdict, bool bounded, bool *late,
                                       struct fmb_gap *out)
 {
     struct support_depth depth;
-    if (verdict == FMB_SEPARATED)
-        return solve_distance(gap, nearest, bounded, out);
+    if (cores == FMB_SEPARATED)
+        return solve_distance(gap, nearest, verdict, bounded, out);
     *late =
         support_depth_begin(&depth, gap, nearest) && !support_depth_step(&depth, RAISED_AT_ONCE);
-    return end_depth(&depth, verdict, out);
+    return end_depth(&depth, cores, verdict, bounded, out);
 }
 
 static void begin_placing(struct support_gap_work *work)
@@ -333,10 +399,10 @@ enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapp
         if (!nearest)
             search(&gap, cores, farthest, &searched);
         nearest = nearest ? nearest : &searched;
-        outcome = solve_at_once(&gap, nearest, cores, !work, &late, out);
+        outcome = solve_at_once(&gap, nearest, cores, verdict, !work, &late, out);
     }
     if (outcome == GAP_KNOWN && pair->rounded)
-        support_round_gap(pair->frames, 0, verdict, out);
+        support_round_gap(pair->frames, 0, verdict, has_deepest(pair, verdict), out);
     if (outcome != GAP_UNSURE)
         return complete(outcome, swapped, out);
     if (!work)
@@ -389,9 +455,11 @@ static enum gap_outcome solve_placed(struct support_gap_work *work, struct fmb_g
     if (work->placed.least == 0) { /* two points at the origin of the world */
         memset(out, 0, sizeof *out);
         out->direction[0] = 1;
+        out->has_witness = has_deepest(&work->pair, work->of_pair);
         return GAP_KNOWN;
     }
-    const enum gap_outcome outcome = solve_distance(&work->gap, &work->nearest, false, out);
+    const enum gap_outcome outcome =
+        solve_distance(&work->gap, &work->nearest, work->of_pair, false, out);
     return outcome == GAP_FAR ? GAP_FAR : GAP_KNOWN;
 }
 
@@ -413,7 +481,7 @@ enum gap_outcome support_gap_step(struct support_gap_work *work, struct fmb_gap 
             outcome = solve_placed(work, out);
     } else if (work->stage != GAP_PLACING &&
                (work->flat || support_depth_step(&work->depth, RAISED_AT_ONCE))) {
-        outcome = end_depth(&work->depth, work->verdict, out);
+        outcome = end_depth(&work->depth, work->verdict, work->of_pair, false, out);
         if (outcome == GAP_UNSURE && work->stage == GAP_DEPTH)
             begin_placing(work);
         else
@@ -424,7 +492,8 @@ enum gap_outcome support_gap_step(struct support_gap_work *work, struct fmb_gap 
     const bool scaled = work->stage != GAP_DEPTH && work->placed.least > 0;
     const int exponent = scaled ? (int) work->placed.exponent : 0;
     if (outcome == GAP_KNOWN && work->pair.rounded)
-        support_round_gap(&work->frames, exponent, work->of_pair, out);
+        support_round_gap(&work->frames, exponent, work->of_pair,
+                          has_deepest(&work->pair, work->of_pair), out);
     if (outcome == GAP_KNOWN && scaled)
         scale_lengths(out, exponent);
     complete(outcome, work->swapped, out);

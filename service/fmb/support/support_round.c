@@ -379,9 +379,12 @@ void support_round_box(const struct support_pair *pair, const double contact[2],
  * that times its radius: by less than 4 u of the coordinates, since d >= R for separated frames.
  * With the rounding of their own coordinates, the upper bound grows by at most 8 u of the sum of
  * coordinates and radii. The gap of the cores was held to 0.9 of the limit of fmb.h on the width;
- * the remaining tenth is more than this. */
+ * the remaining tenth is more than this.
+ *
+ * The points of an overlap move by the radii along the direction, so that a - b stays what the
+ * depth and the direction say. */
 void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_verdict verdict,
-                       struct fmb_gap *gap)
+                       bool deepest, struct fmb_gap *gap)
 {
     const double radius[2] = {ldexp(frames->a.frame->radius, -exponent),
                               ldexp(frames->b.frame->radius, -exponent)};
@@ -409,6 +412,12 @@ void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_v
             gap->witness[1][axis] -= radius[1] * (toward[axis] / length);
         }
         gap->bounds[1] += error;
+    } else if (deepest) {
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+            gap->witness[0][axis] += radius[0] * gap->direction[axis];
+            gap->witness[1][axis] -= radius[1] * gap->direction[axis];
+        }
+        gap->bounds[1] = fmin(gap->bounds[1], 0);
     } else {
         gap->has_witness = false;
         memset(gap->witness, 0, sizeof gap->witness);

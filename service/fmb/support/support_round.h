@@ -103,8 +103,9 @@ void support_round_box(const struct support_pair *pair, const double contact[2],
  *
  * In:  frames   in the order of the gap
  *      verdict  of the pair
+ *      deepest  the witness points of the cores become the deepest pair of the frames
  *      *gap     of the cores, with tight bounds (support_gap.h) */
 void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_verdict verdict,
-                       struct fmb_gap *gap);
+                       bool deepest, struct fmb_gap *gap);
 
 #endif

@@ -47,12 +47,19 @@ void support_lowest(const struct support_pair *pair, const double n[FMB_DIM_MAX]
     support_point(pair, out->column, out->at);
 }
 
+/* D translated by -at. */
+struct translated {
+    const struct support_pair *pair;
+    const double *at;
+};
+
 static void support(const void *context, const double n[FMB_DIM_MAX], struct gap_corner *out)
 {
+    const struct translated *of = context;
     struct support_vertex vertex;
-    support_lowest(context, n, &vertex);
+    support_lowest(of->pair, n, &vertex);
     const struct support_column *column = &vertex.column;
-    memcpy(out->at, vertex.at, sizeof out->at);
+    gap_subtract(vertex.at, of->at, out->at);
     out->bits =
         column->vertex[0] | column->vertex[1] << VERTEX_BITS | column->end << 2 * VERTEX_BITS;
 }
@@ -174,16 +181,16 @@ enum fmb_verdict support_search(const struct support_pair *pair, double far,
     return support_search_from(pair, toward, far, out);
 }
 
-enum fmb_verdict support_search_from(const struct support_pair *pair,
-                                     const double toward[FMB_DIM_MAX], double far,
-                                     struct support_nearest *out)
+static void search(const struct support_pair *pair, const double at[FMB_DIM_MAX],
+                   const double toward[FMB_DIM_MAX], double far, struct support_nearest *out)
 {
+    const struct translated of = {pair, at};
     struct gap_simplex simplex;
     memset(out, 0, sizeof *out);
-    out->outcome = gap_nearest(pair, support, pair->dim, toward, pair->error, far, &simplex,
+    out->outcome = gap_nearest(&of, support, pair->dim, toward, pair->error, far, &simplex,
                                out->direction, &out->least);
     if (out->outcome == GAP_FAR)
-        return FMB_SEPARATED;
+        return;
     out->simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
         struct support_vertex *vertex = &out->simplex.vertex[c];
@@ -191,9 +198,24 @@ enum fmb_verdict support_search_from(const struct support_pair *pair,
         memcpy(vertex->at, simplex.corner[c].at, sizeof vertex->at);
         out->weight[c] = simplex.weight[c];
     }
-    if (out->outcome == GAP_KNOWN && out->least > support_separating_distance(pair))
+}
+
+void support_search_near(const struct support_pair *pair, const double at[FMB_DIM_MAX],
+                         const double toward[FMB_DIM_MAX], struct support_nearest *out)
+{
+    search(pair, at, toward, INFINITY, out);
+}
+
+enum fmb_verdict support_search_from(const struct support_pair *pair,
+                                     const double toward[FMB_DIM_MAX], double far,
+                                     struct support_nearest *out)
+{
+    static const double origin[FMB_DIM_MAX];
+    search(pair, origin, toward, far, out);
+    if (out->outcome == GAP_FAR ||
+        (out->outcome == GAP_KNOWN && out->least > support_separating_distance(pair)))
         return FMB_SEPARATED;
-    return simplex.count == pair->dim + 1 && is_swept_open(pair) &&
+    return out->simplex.count == (unsigned) pair->dim + 1 && is_swept_open(pair) &&
                    support_simplex_contains_origin(pair, &out->simplex)
                ? FMB_OVERLAPPING
                : 0;

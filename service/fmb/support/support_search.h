@@ -49,6 +49,10 @@ enum fmb_verdict support_search_from(const struct support_pair *pair,
                                      const double toward[FMB_DIM_MAX], double far,
                                      struct support_nearest *out);
 
+/* The same with D translated by -at: the point of D nearest to the point at. Proves no verdict. */
+void support_search_near(const struct support_pair *pair, const double at[FMB_DIM_MAX],
+                         const double toward[FMB_DIM_MAX], struct support_nearest *out);
+
 /* A computed distance above this proves that D does not contain the origin. The factor covers the
  * rounding of a comparison. */
 static inline double support_separating_distance(const struct support_pair *pair)
