@@ -451,8 +451,10 @@ hulls() {
     feed 3 | "$FMB" query - > /dev/null
     finish_record
     stop_fmbd
-    # The same messages once more, from the second query on and without a service.
-    offset=$("$TOOLS/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && ++queries == 2 { found = 1 }
+    # The same messages once more, without a service and from the first query by handles on, which is
+    # smaller than the first query of all, and its repetitions.
+    offset=$("$TOOLS/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && !whole { whole = $4 }
+        $3 == "FMB_SCENE_QUERY" && $4 < whole { found = 1 }
         !found { offset += 28 + length($3) + $4 } END { print offset }')
     tail -c +$((offset + 1)) "$log" > "$log.late"
     start_record "$log.2"

@@ -88,7 +88,7 @@ static void publish(void *context, const char *what, const unsigned char *bytes,
 
 static void messages_that_cannot_be_read_are_counted(void **state)
 {
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     const struct fmb_scene scene = listed();
     relay_query(test.client, &scene);
     const size_t count = hostile_each("scene_result", publish, test.relay);
@@ -116,7 +116,7 @@ static void publish_pair_results(struct relay *relay)
 static void results_of_another_kind_are_ignored(void **state)
 {
     struct fmb_client_answer answer;
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     const struct fmb_scene scene = all_pairs();
     assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
     deceived = test.client;
@@ -141,7 +141,7 @@ static void results_of_another_client_are_ignored(void **state)
 {
     struct fmb_client_answer answer;
     relay_draw(placement, 2, 3, 1, 1, 5);
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     deceived = test.client;
     test.relay->before = publish_results_of_another;
     assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
@@ -870,7 +870,7 @@ static void lies_at_first(struct scene_result *result, int turn)
 static void the_right_result_after_forged_ones_is_taken(void **state)
 {
     test.relay->lie = lies_at_first;
-    relay_start(2000, 0.01, 1000);
+    relay_start(2000, 0.01, 10000);
     struct fmb_scene scene = all_pairs();
     scene.placement_count = 400;
     relay_query(test.client, &scene);
@@ -892,7 +892,7 @@ static void steps_of_one_pair_end(void **state)
 {
     test.relay->lie = test.relay->second_lie = step_by_step;
     test.relay->double_result = 1;
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     struct fmb_scene scene = listed();
     scene.pair_count = 300;
     relay_query(test.client, &scene);
@@ -915,7 +915,7 @@ static void in_no_time(struct scene_result *result, int turn)
 static void slow_services_get_fewer_pairs_a_query(void **state)
 {
     test.relay->lie = for_ever;
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     struct fmb_scene scene = listed();
     relay_query(test.client, &scene);
     uint64_t before = relay_counts(test.client).queries;
@@ -986,7 +986,7 @@ static void unknown_bodies_one_by_one_are_sent_whole(void **state)
 static void an_answer_counts_more_than_an_unknown_body(void **state)
 {
     struct fmb_client_answer answer;
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     const struct fmb_scene scene = listed();
     relay_query(test.client, &scene);
     assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
@@ -1124,7 +1124,7 @@ static void second_results_are_ignored(void **state)
     test.relay->double_result = 1;
     test.relay->second_lie = other_verdict;
     test.relay->second_pair_lie = other_pair_verdict;
-    relay_start(2000, 5, 1);
+    relay_start(2000, 5, 6);
     scene.want = 0;
     for (int i = 0; i < 5; i++) {
         relay_query(test.client, &scene);

@@ -44,7 +44,7 @@ static unsigned (*list_of(size_t count, size_t frames))[2]
 
 static void small_scenes_of_every_kind_are_answered(void **state)
 {
-    relay_start(1000, 5, 1);
+    relay_start(1000, 5, 6);
     for (size_t count = 0; count < 40; count += count < 4 ? 1 : 9)
         for (int dim = 2; dim <= 3; dim++)
             for (unsigned want = 0; want <= (ALL_WANTS | FMB_WANT_GAP); want++) {
@@ -73,7 +73,7 @@ static void small_scenes_of_every_kind_are_answered(void **state)
 static void all_pairs_of_many_bodies_are_answered(void **state)
 {
     const size_t count = relay_size(5000, 1300);
-    relay_start(65536, 20, 1);
+    relay_start(65536, 5, 6);
     struct fmb_placement *frame = frames_of(count, 3, cbrt(4.0 * (double) count), 1);
     const struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(test.client, &scene);
@@ -86,7 +86,7 @@ static void all_pairs_of_many_bodies_are_answered(void **state)
 static void all_pairs_of_a_crowd_are_answered(void **state)
 {
     const size_t count = relay_size(900, 560);
-    relay_start(65536, 20, 1);
+    relay_start(65536, 5, 6);
     struct fmb_placement *frame = frames_of(count, 2, 2, 1);
     struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     relay_query(test.client, &scene);
@@ -113,7 +113,7 @@ static void query_list(size_t count, size_t frames, unsigned want)
 static void many_listed_pairs_are_answered(void **state)
 {
     const size_t count = relay_size(100000, 20000);
-    relay_start(65536, 20, 1);
+    relay_start(65536, 5, 6);
     query_list(count, 3000, 0);
     query_list(count, 3000, ALL_WANTS);
 }
@@ -122,7 +122,7 @@ static void many_listed_pairs_are_answered(void **state)
  * known how long the first ones take. */
 static void pairs_of_few_bodies_fill_datagrams(void **state)
 {
-    relay_start(65536, 20, 1);
+    relay_start(65536, 5, 6);
     query_list(80000, 3, 0);
     assert_in_range(relay_counts(test.client).queries, 80000 / QUERY_PAIRS_MAX, 80000 / 512);
 }
@@ -207,7 +207,7 @@ static unsigned (*all_pairs_of(size_t placements))[2]
 /* fmb and sat decide listed pairs only. */
 static void every_method_answers(void **state)
 {
-    relay_start(1000, 5, 1);
+    relay_start(1000, 5, 6);
     struct fmb_placement *frame = frames_of(60, 3, 3, 1);
     unsigned(*pair)[2] = all_pairs_of(60);
     for (size_t i = 0; fmb_method_at(i); i++) {
@@ -235,7 +235,7 @@ static void every_method_answers(void **state)
 /* Near pairs, none missed, in the blocks that a large scene is divided into. */
 static void near_pairs_of_many_bodies_are_answered(void **state)
 {
-    relay_start(65536, 20, 1);
+    relay_start(65536, 5, 6);
     struct fmb_placement *frame = frames_of(800, 3, 25, 1);
     struct fmb_scene scene = scene_of(frame, 800, FMB_PAIRS_ALL, 0);
     scene.margin = 0.25;
@@ -345,7 +345,7 @@ static const struct fmb_body *with_hull(const struct fmb_body *body, int number)
 static void hulls(void **state)
 {
     enum { BODIES = 120 };
-    relay_start(4000, 5, 1);
+    relay_start(4000, 5, 6);
     for (int dim = 2; dim <= 3; dim++) {
         struct fmb_placement *body = frames_of(BODIES, dim, dim == 2 ? 25 : 8, 1);
         for (int i = 0; i < BODIES; i++)
@@ -381,7 +381,7 @@ static void hulls(void **state)
 static void groups_names_and_vertices(void **state)
 {
     enum { BODIES = 300 };
-    relay_start(4000, 5, 1);
+    relay_start(4000, 5, 6);
     for (int dim = 2; dim <= 3; dim++) {
         struct fmb_placement *body = frames_of(BODIES, dim, dim == 2 ? 40 : 12, 1);
         for (int i = 0; i < BODIES; i++) {
@@ -418,7 +418,7 @@ static void groups_names_and_vertices(void **state)
 /* Each pair a query of its own: no pair within a group is sent. */
 static void groups_where_pairs_are_listed(void **state)
 {
-    relay_start(1000, 5, 1);
+    relay_start(1000, 5, 6);
     struct fmb_placement *body = frames_of(12, 3, 2, 1);
     relay_use_first_frames(body, 12);
     for (int i = 0; i < 10; i++)
@@ -433,7 +433,7 @@ static void groups_where_pairs_are_listed(void **state)
 
 static void one_pair_is_answered(void **state)
 {
-    relay_start(10, 5, 1);
+    relay_start(10, 5, 6);
     struct fmb_client_answer answer;
     struct fmb_placement pair[2];
     relay_draw(pair, 2, 2, 1, 1, 1);
@@ -457,7 +457,7 @@ static void one_pair_is_answered(void **state)
 
 static void wrong_scenes_are_refused(void **state)
 {
-    relay_start(10, 5, 1);
+    relay_start(10, 5, 6);
     struct fmb_placement frame[3], good[3];
     relay_draw(good, 3, 3, 1, 1, 1);
     memcpy(frame, good, sizeof good);
@@ -531,7 +531,7 @@ static void a_scene_of_zeros_queries_all_pairs(void **state)
     struct fmb_scene scene = {.placements = placement, .placement_count = 2};
     int contacts = 0;
     placement[1] = placement[0];
-    relay_start(10, 5, 1);
+    relay_start(10, 5, 6);
     assert_int_equal(fmb_client_query(test.client, &scene, count_meeting, &contacts), FMB_OK);
     assert_int_equal(contacts, 1);
     assert_int_equal(test.relay->queries, 1);
@@ -544,7 +544,7 @@ static void a_scene_of_zeros_queries_all_pairs(void **state)
 static void bodies_that_move_need_a_window(void **state)
 {
     struct fmb_placement placement[2] = {{.body = cube_of(1)}};
-    relay_start(10, 5, 1);
+    relay_start(10, 5, 6);
     for (int moving = 0; moving < 2; moving++)
         for (int duration = 0; duration < 2; duration++)
             for (int instant = 0; instant < 2; instant++) {
@@ -580,7 +580,7 @@ static void count_refusals(void *user, const struct fmb_client_answer *answer)
 static void refusals_of_the_service_are_given(void **state)
 {
     int count = 0;
-    relay_start(10, 5, 1);
+    relay_start(10, 5, 6);
     struct fmb_placement frame[5];
     relay_draw(frame, 5, 3, 1, 1, 1);
     struct fmb_scene scene = scene_of(frame, 5, FMB_PAIRS_ALL, 0);
@@ -776,7 +776,7 @@ static void ignored_pairs_are_left_out(void **state)
 static void bodies_of_many_frames_are_answered(void **state)
 {
     enum { FRAMES = 500, BODIES = 5 };
-    relay_start(20000, 5, 1);
+    relay_start(20000, 5, 6);
     struct fmb_placement *placement = frames_of(BODIES * FRAMES, 3, 1, 1);
     struct fmb_frame *frame = malloc((size_t) BODIES * FRAMES * sizeof *frame);
     for (int i = 0; i < BODIES * FRAMES; i++) {
@@ -837,7 +837,7 @@ static void pairs_that_just_fit_into_a_datagram(void **state)
     enum { BOX = 49, MORE = 48 }; /* bytes of a box, and how many more a cuboid has */
     static const unsigned pair[1][2] = {{0, 1}};
     const int most = QUERY_BYTES_MAX - WIRE_SCENE_QUERY_BYTES - WIRE_PAIR_BYTES;
-    relay_start(20000, 5, 1);
+    relay_start(20000, 5, 6);
     for (int bytes = most - 1; bytes < most + 6; bytes++) {
         const int frames = bytes - 2 * bytes_of(GEOMETRY_NONE_BYTES);
         int count = frames / (BOX + MORE) + 1;
@@ -865,7 +865,7 @@ static void pairs_that_just_fit_into_a_datagram(void **state)
 /* The answers from first_pair on, of lists, of one block and of many. */
 static void scenes_may_begin_with_any_pair(void **state)
 {
-    relay_start(4000, 5, 1);
+    relay_start(4000, 5, 6);
     struct fmb_placement *frame = frames_of(800, 3, 16, 1);
     unsigned(*pair)[2] = list_of(500, 800);
     for (int kind = 0; kind < 4; kind++) {
