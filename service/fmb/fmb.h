@@ -338,10 +338,16 @@ enum fmb_want {
  * bounds[1] is minus the smallest depth over all facets of the Minkowski difference of the two,
  * swept over the window; of a pair with a hull, of a polytope inside of it.
  *
+ * Witness points. Those of a separated pair are its nearest points, at the time of the least
+ * distance. Those of an overlapping pair without relative motion are a deepest pair: a - b is the
+ * depth times the direction, and a translation of b by that separates the two. a is in the first
+ * frame and b in the second, all of this within the greatest width of an enclosure. Their midpoint
+ * need not be a common point. Pairs that touch, and overlapping pairs that move relative to each
+ * other, have none.
+ *
  * Frames with a radius: the gap is that of their cores less both radii, and each bound is proven as
- * that of the cores is. An overlapping pair has no witness points, even if its cores are apart. The
- * largest coordinate of a vertex, here and in struct fmb_answer, is then that of the cores plus the
- * radius of the frame.
+ * that of the cores is. The largest coordinate of a vertex, here and in struct fmb_answer, is then
+ * that of the cores plus the radius of the frame.
  *
  * Width. bounds[1] - bounds[0] is at most 1e-12 of the largest magnitude of a coordinate of any
  * vertex of either body over the window, plus 32 * 2^-1074. (In a window shorter than 2^-1000 s the
@@ -358,8 +364,8 @@ enum fmb_want {
 struct fmb_gap {
     double bounds[2];               /* lower and upper */
     double direction[FMB_DIM_MAX];  /* from a to b, a unit vector up to rounding */
-    bool has_witness;               /* the pair is separated: time and witness are set */
-    double time;                    /* of the least distance, seconds, within [0, T] */
+    bool has_witness;               /* time and witness are set */
+    double time;                    /* of the points, seconds, within [0, T] */
     double witness[2][FMB_DIM_MAX]; /* [0] in a, [1] in b, world coordinates */
     unsigned frame[2]; /* [0] of a, [1] of b: the pair of frames; 0 for a body of one frame */
 };
@@ -384,6 +390,14 @@ struct fmb_gap {
  * either of these is too far out by at most 1e-12 of the largest coordinate, or of the reach of its
  * body if that is larger. It may be infinite if a vertex is a sum of components that exceeds the
  * largest double.
+ *
+ * The point is of the methods certified and exact. At its time, which is at most 1e-12 T off, it is
+ * within 1e-12 of the largest such magnitude, on each axis, of a point that both bodies contain; a
+ * coordinate beyond the largest double is infinite, with its sign. Of frames that are neither hulls
+ * nor rounded it is near the middle of the intersection over the window where doubles suffice: the
+ * mean of the middles of the parts of edges of each frame that are within the other, and of paths
+ * of vertices. Of bodies of several frames it belongs to a pair of frames with the verdict of the
+ * bodies.
  *
  * Both methods give the same bits for the swapped pair and on every machine; another version of the
  * library may give different bits within these limits. An end of a box whose magnitude exceeds the

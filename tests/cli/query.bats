@@ -470,7 +470,8 @@ gap() {
     query "$(spaced)" --gap
     ended 0
     gap 0 -0.5
-    jq -e '.pairs[0] | .verdict == "overlapping" and .direction == [1,0] and (has("witness") | not)' <<< "$output"
+    jq -e '.pairs[0] | .verdict == "overlapping" and .direction == [1,0] and
+        (.witness | .time == 0 and .a[0] - .b[0] == 0.5 and .a[1] == .b[1])' <<< "$output"
     jq -e '.pairs[1] | .verdict == "touching" and .gap == [0,0] and .direction == [0,-1] and (has("witness") | not)' <<< "$output"
     gap 2 0.5
     jq -e '.pairs[2] | .verdict == "separated" and .direction == [-1,0]' <<< "$output"

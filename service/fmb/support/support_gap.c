@@ -147,7 +147,7 @@ static bool nearest_on_grid(const struct support_gap *gap, const double at[FMB_D
 /* The point of D nearest to the origin. If that is the origin, the depth gives the direction. */
 static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
 {
-    static const double origin[FMB_DIM_MAX];
+    const double origin[FMB_DIM_MAX] = {0};
     struct support_nearest nearest;
     if (nearest_on_grid(gap, origin, &nearest))
         memcpy(out->direction, nearest.direction, sizeof out->direction);

@@ -210,7 +210,7 @@ enum fmb_verdict support_search_from(const struct support_pair *pair,
                                      const double toward[FMB_DIM_MAX], double far,
                                      struct support_nearest *out)
 {
-    static const double origin[FMB_DIM_MAX];
+    const double origin[FMB_DIM_MAX] = {0};
     search(pair, origin, toward, far, out);
     if (out->outcome == GAP_FAR ||
         (out->outcome == GAP_KNOWN && out->least > support_separating_distance(pair)))
