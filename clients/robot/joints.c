@@ -438,11 +438,23 @@ static void measure_step(struct joint_table *table)
 
 void joint_table_describe(const struct joint_table *table, FILE *out)
 {
+    enum { NAMED = 8 };
+    const struct robot *robot = table->joints->robot;
     char by[NUMBER_TEXT_MAX];
     fprintf(out, "rows: %zu", table->rows);
     if (table->step.by > 0)
         fprintf(out, ", largest step %s of '%s' to line %lu", number_short(table->step.by, by),
-                table->joints->robot->joints[table->step.joint].name->name, table->step.line);
+                robot->joints[table->step.joint].name->name, table->step.line);
+    for (size_t j = 0, named = 0; j < robot->joint_count && named <= NAMED; j++) {
+        size_t i = 0;
+        while (i < table->columns && table->column[i] != j)
+            i++;
+        if (robot->joints[j].type == ROBOT_FIXED || i < table->columns)
+            continue;
+        fprintf(out, "%s%s", named == 0 ? "; not in it: " : ", ",
+                named < NAMED ? robot->joints[j].name->name : "...");
+        named++;
+    }
     if (table->fixed > 0)
         fprintf(out, "; ignored: columns of fixed joints: %zu", table->fixed);
     if (table->unknown > 0)

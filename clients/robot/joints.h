@@ -91,7 +91,8 @@ void joint_table_close(struct joint_table *table);
 enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
 enum joint_row joint_table_next(struct joint_table *table);
 
-/* Writes "N rows, largest step ...", and which columns were ignored. */
+/* Writes "rows: N, largest step ...", which joints have no column, and how many columns were
+ * ignored. */
 void joint_table_describe(const struct joint_table *table, FILE *out);
 
 /* Goes back to the first row. */

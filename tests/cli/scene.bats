@@ -522,6 +522,7 @@ fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): -inf is outside its limits, 
     positions --joints-csv t.csv
     is '1.25
 0.75'
+    [[ $stderr == *"to line 3; not in it: slide" ]]
     printf 'turn,slide\n0.5,0.5\n' > t.csv
     positions --joints-csv t.csv
     is 0.5
@@ -534,7 +535,7 @@ fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): -inf is outside its limits, 
     scene robot.urdf --joints turn=0 --joints-csv t.csv
     said "fmb: robot.urdf: links: 3, with a body: 3; size: 1 x 3 x 7 in the first pose
 fmb: pairs tested: 1, ignored: 2: 2 neighbours
-fmb: t.csv: rows: 3, largest step 2.5 of 'slide' to line 6"
+fmb: t.csv: rows: 3, largest step 2.5 of 'slide' to line 6; not in it: turn"
     shows '[.label, .duration, .bodies[2].position[1]]'
     is '["t = 0",0.25,1]
 ["a \"b\", c (t = 0.25)",0.75,2]
