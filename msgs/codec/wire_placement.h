@@ -52,14 +52,14 @@ static inline void wire_write_text(struct writer *writer, const char *text)
     writer_string(writer, text ? text : "");
 }
 
-/* Whether the time is finite and 0 or more, and no coordinate is NaN: one beyond the largest double
- * is infinite. In: point: a time and count - 1 coordinates. */
+/* Whether the time is finite and at least 0, and no coordinate is NaN; coordinates may be infinite.
+ * In: point: a time and count - 1 coordinates. */
 bool wire_is_point(const double *point, int count);
 
 /* Reads the lists of gaps: bounds, directions, witnesses, frames. There is a gap for each of count
- * verdicts, or for none. padded: a gap without witness points has NaN for them, as in scenes;
- * otherwise it has no numbers, and count is 1. *names_frames: whether frames are present. Returns
- * the dimension of the gaps; 0: there are none. */
+ * verdicts, or for none. padded: as in scenes, a gap without witness points has NaN in their place;
+ * otherwise the list of witnesses is then empty, and count is 1. *names_frames: whether frames are
+ * present. Returns the dimension of the gaps; 0: there are none. */
 int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count, bool padded,
                    bool *names_frames, struct fmb_gap *out);
 

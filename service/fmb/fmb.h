@@ -315,8 +315,8 @@ enum fmb_want {
     FMB_WANT_BOX = 1,
     FMB_WANT_CERTIFICATE = 2,
     FMB_WANT_TIMES = 4, /* contact intervals; fmb_decide() always gives them */
-    FMB_WANT_GAP = 8,   /* only of methods that are certain */
-    FMB_WANT_POINT = 16 /* of methods that are certain */
+    FMB_WANT_GAP = 8,   /* other methods than those that are certain refuse it */
+    FMB_WANT_POINT = 16 /* a point of each contact; other methods give none */
 };
 
 /* An enclosure of the gap, the signed distance of two bodies over the window:
@@ -339,11 +339,11 @@ enum fmb_want {
  * swept over the window; of a pair with a hull, of a polytope inside of it.
  *
  * Witness points. Those of a separated pair are its nearest points, at the time of the least
- * distance. Those of an overlapping pair without relative motion are a deepest pair: a - b is the
- * depth times the direction, and a translation of b by that separates the two. a is in the first
- * frame and b in the second, all of this within the greatest width of an enclosure. Their midpoint
- * need not be a common point. Pairs that touch, and overlapping pairs that move relative to each
- * other, have none.
+ * distance. Those of an overlapping pair without relative motion are a deepest pair: a point a of
+ * the first frame and a point b of the second, such that a - b is the depth times the direction. A
+ * translation of the second body by a - b separates the two. All of this holds up to the greatest
+ * width of an enclosure. The midpoint of a and b may be outside either frame. Pairs that touch, and
+ * overlapping pairs that move relative to each other, have no witness points.
  *
  * Frames with a radius: the gap is that of their cores less both radii, and each bound is proven as
  * that of the cores is. The largest coordinate of a vertex, here and in struct fmb_answer, is then
@@ -391,13 +391,13 @@ struct fmb_gap {
  * body if that is larger. It may be infinite if a vertex is a sum of components that exceeds the
  * largest double.
  *
- * The point is of the methods certified and exact. At its time, which is at most 1e-12 T off, it is
- * within 1e-12 of the largest such magnitude, on each axis, of a point that both bodies contain; a
- * coordinate beyond the largest double is infinite, with its sign. Of frames that are neither hulls
- * nor rounded it is near the middle of the intersection over the window where doubles suffice: the
- * mean of the middles of the parts of edges of each frame that are within the other, and of paths
- * of vertices. Of bodies of several frames it belongs to a pair of frames with the verdict of the
- * bodies.
+ * Only the methods certified and exact give a point. At some time, at most 1e-12 T from the time of
+ * the point, both bodies contain a point that differs from it on each axis by at most 1e-12 of the
+ * largest such magnitude. A coordinate beyond the largest double is infinite, with its sign. For
+ * frames that are neither hulls nor rounded, if doubles suffice, the point is near the middle of
+ * the intersection over the window: it is the mean of the middles of the parts of edges, and of
+ * paths of vertices, of each frame that are within the other, and of the points where edges cross.
+ * For bodies of several frames, it belongs to a pair of frames that has the verdict of the bodies.
  *
  * Both methods give the same bits for the swapped pair and on every machine; another version of the
  * library may give different bits within these limits. An end of a box whose magnitude exceeds the

@@ -19,8 +19,8 @@ static struct fmb_gap gap_of_vertices(const struct frame_pair *frames, enum fmb_
 {
     struct support_decision decision;
     struct fmb_answer answer = {0};
-    bool done = support_decision_begin_rest(frames, FMB_WANT_GAP, verdict, INFINITY, false,
-                                            &decision, &answer);
+    bool done = support_decision_begin_gap_and_point(frames, FMB_WANT_GAP, verdict, INFINITY, false,
+                                                     &decision, &answer);
     while (!done)
         done = support_decision_step(&decision, &answer);
     assert_true(answer.has_gap);
@@ -523,8 +523,8 @@ static int step_gap(const struct frame_pair *frames, int most, struct fmb_gap *g
     struct support_decision decision;
     struct fmb_answer answer = {0};
     int steps = 1;
-    bool done = support_decision_begin_rest(frames, FMB_WANT_GAP, FMB_OVERLAPPING, INFINITY, false,
-                                            &decision, &answer);
+    bool done = support_decision_begin_gap_and_point(frames, FMB_WANT_GAP, FMB_OVERLAPPING,
+                                                     INFINITY, false, &decision, &answer);
     for (; !done && steps < most; steps++)
         done = support_decision_step(&decision, &answer);
     support_decision_end(&decision);

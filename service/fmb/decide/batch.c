@@ -293,7 +293,6 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
     put_no_point(batch, i);
 }
 
-/* Leaves pair i open. */
 static void leave_open(const struct fmb_batch *batch, size_t i)
 {
     put_nothing(batch, i);
@@ -338,15 +337,15 @@ static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb
         memcpy(batch->points[i], answer->point, sizeof answer->point);
 }
 
-/* What is wanted of pairs in contact, besides gaps. */
+/* Returns what is wanted of pairs in contact, besides gaps. */
 static unsigned want_of_contacts(const struct fmb_batch *batch)
 {
     return (batch->boxes ? FMB_WANT_BOX : 0) | (batch->contacts ? FMB_WANT_TIMES : 0) |
            (batch->points ? FMB_WANT_POINT : 0);
 }
 
-/* Decides pair k by itself, or leaves it open. want: of want_of_contacts(). In: its contact is NAN
- * or final, its box and its point NAN. */
+/* Decides pair k by itself, or leaves it open. In: want, bits of want_of_contacts(); the contact of
+ * the pair is NAN or final, its box and its point are NAN. */
 static void decide_single(struct batch_block *block, size_t k, unsigned want)
 {
     const struct fmb_batch *batch = block->batch;
@@ -439,8 +438,8 @@ static struct kernel_call call_of(struct selection *selection, double duration)
         .pairs = selection->pair, .count = selection->count, .duration = duration};
 }
 
-/* Puts what the filter does not give of pair k, its box, its point or both: each computed by
- * itself, or the pair is left open. */
+/* Computes what the filter did not give for pair k, its box, its point or both, or leaves the pair
+ * open. */
 static void put_missing(struct batch_block *block, size_t k, bool box, bool point)
 {
     const struct fmb_batch *batch = block->batch;
@@ -450,8 +449,8 @@ static void put_missing(struct batch_block *block, size_t k, bool box, bool poin
     const bool done =
         may_decide_single(block, k) &&
         (!box || certified_box_unsure(pair[0], pair[1], batch->duration, batch->boxes[i])) &&
-        (!point ||
-         certified_rest(pair[0], pair[1], batch->duration, FMB_WANT_POINT, INFINITY, &answer));
+        (!point || certified_gap_and_point(pair[0], pair[1], batch->duration, FMB_WANT_POINT,
+                                           INFINITY, &answer));
     if (!done)
         leave_open(batch, i);
     else if (point)
@@ -658,7 +657,7 @@ static void put_gap(const struct batch_job *job, const struct batch_block *block
     batch->gaps[i] = gap_none();
     if (!batch_is_contact(*verdict) && (*verdict != FMB_SEPARATED || block->far[slot]))
         return;
-    if (certified_rest(a, b, batch->duration, FMB_WANT_GAP, job->farthest, &answer)) {
+    if (certified_gap_and_point(a, b, batch->duration, FMB_WANT_GAP, job->farthest, &answer)) {
         batch->gaps[i] = answer.gap;
         return;
     }

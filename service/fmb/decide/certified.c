@@ -284,12 +284,12 @@ static bool begin_program(struct certified *certified, unsigned missing)
                                                          &certified->program, &certified->proven);
 }
 
-/* Sets the gap and the point, as far as they are wanted, of a pair with this verdict. Returns false
- * if that needs more steps of the programs, which have then begun unless the decision is bounded.
+/* Sets the gap and the point, as far as they are wanted, of a pair whose verdict is known. Returns
+ * false if that takes steps of the programs, which have then begun unless the decision is bounded.
  */
-static bool begin_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                       unsigned want, double farthest, bool bounded,
-                       struct support_decision *program, struct fmb_answer *answer)
+static bool begin_gap_and_point(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                                double duration, unsigned want, double farthest, bool bounded,
+                                struct support_decision *program, struct fmb_answer *answer)
 {
     if (want & FMB_WANT_GAP) {
         const enum gap_outcome outcome =
@@ -301,8 +301,8 @@ static bool begin_rest(const struct fmb_prepared *a, const struct fmb_prepared *
             want &= ~(unsigned) FMB_WANT_GAP;
     }
     const struct frame_pair pair = pair_of(a, b, duration);
-    return !want || support_decision_begin_rest(&pair, want, answer->verdict, farthest, bounded,
-                                                program, answer);
+    return !want || support_decision_begin_gap_and_point(&pair, want, answer->verdict, farthest,
+                                                         bounded, program, answer);
 }
 
 /* Sets what is wanted besides the verdict, which is known. Ends that the programs gave are used
@@ -312,7 +312,7 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
     const struct fmb_prepared *a = certified->given[0], *b = certified->given[1];
     const struct fmb_answer *proven = &certified->proven;
     const bool meets = answer->verdict != FMB_SEPARATED;
-    unsigned missing = 0, rest = certified->want & FMB_WANT_GAP;
+    unsigned missing = 0, left = certified->want & FMB_WANT_GAP;
     answer->has_contact = meets && certified->want & FMB_WANT_TIMES;
     answer->has_box = meets && certified->want & FMB_WANT_BOX;
     answer->has_point = meets && certified->want & FMB_WANT_POINT;
@@ -323,9 +323,9 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
             missing |= FMB_WANT_TIMES;
     }
     if (meets)
-        rest |= certified_box(a, b, certified->duration,
+        left |= certified_box(a, b, certified->duration,
                               certified->want & (FMB_WANT_BOX | FMB_WANT_POINT), answer);
-    if (rest & FMB_WANT_BOX && !certified_box_unsure(a, b, certified->duration, answer->box)) {
+    if (left & FMB_WANT_BOX && !certified_box_unsure(a, b, certified->duration, answer->box)) {
         if (proven->has_box)
             memcpy(answer->box, proven->box, sizeof answer->box);
         else
@@ -333,17 +333,18 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
     }
     if (missing)
         return begin_program(certified, missing);
-    rest &= ~(unsigned) FMB_WANT_BOX;
-    certified->stage = CERTIFIED_REST;
-    return begin_rest(a, b, certified->duration, rest, certified->farthest, certified->bounded,
-                      &certified->program, answer);
+    left &= ~(unsigned) FMB_WANT_BOX;
+    certified->stage = CERTIFIED_GAP_AND_POINT;
+    return begin_gap_and_point(a, b, certified->duration, left, certified->farthest,
+                               certified->bounded, &certified->program, answer);
 }
 
-bool certified_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                    unsigned want, double farthest, struct fmb_answer *answer)
+bool certified_gap_and_point(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                             double duration, unsigned want, double farthest,
+                             struct fmb_answer *answer)
 {
     struct support_decision program;
-    return begin_rest(a, b, duration, want, farthest, true, &program, answer);
+    return begin_gap_and_point(a, b, duration, want, farthest, true, &program, answer);
 }
 
 /* a, b: the frames of the pair, prepared, or NULL. */

@@ -41,7 +41,7 @@ struct certified {
     unsigned want;
     /* What the programs compute: the whole answer; what is missing of contact and box; gap and
      * point. */
-    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_REST } stage;
+    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP_AND_POINT } stage;
     struct support_decision program;
     struct fmb_answer proven; /* by programs: verdict, contact and box */
     /* The pair that the rungs decide: the given one, or its projection. */
@@ -105,11 +105,12 @@ enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                   double duration, int passes);
 
-/* Sets the gap and the point, as far as they are wanted, of a prepared pair with answer->verdict; a
- * gap that is surely greater than farthest has bounds of NAN. Bounded: returns false if one of them
- * needs more. */
-bool certified_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
-                    unsigned want, double farthest, struct fmb_answer *answer);
+/* Sets the gap and the point, as far as they are wanted, of a prepared pair with answer->verdict. A
+ * gap that is surely greater than farthest has bounds of NAN. Returns false if the first search in
+ * doubles does not give both. In: want, bits of FMB_WANT_GAP and FMB_WANT_POINT. */
+bool certified_gap_and_point(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                             double duration, unsigned want, double farthest,
+                             struct fmb_answer *answer);
 
 /* Computes the contact of a pair in contact that drifts. rounds: operations on these numbers may
  * round. span: of the pair. exact: integers may be used for an end that doubles do not give within
@@ -117,14 +118,14 @@ bool certified_rest(const struct fmb_prepared *a, const struct fmb_prepared *b, 
 bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, bool rounds,
                 struct dyadic_span span, bool exact, double contact[2]);
 
-/* Sets box and point of a prepared pair in contact, as far as they are wanted and doubles give them
- * within their limits. In: want, bits of FMB_WANT_BOX and FMB_WANT_POINT. Returns those of what
- * doubles do not give. */
+/* Sets the box and the point of a prepared pair in contact, as far as they are wanted and doubles
+ * give them within their limits. In: want, bits of FMB_WANT_BOX and FMB_WANT_POINT. Returns the
+ * bits of what doubles do not give. */
 unsigned certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                        unsigned want, struct fmb_answer *answer);
 
-/* Sets the box in integers of at most 512 bits, if doubles do not give it. Returns false if it
- * needs more. */
+/* Computes the box of a pair in contact for which certified_box() does not give it, in integers of
+ * at most 512 bits. Returns false if it needs more. */
 bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
                           double duration, double box[2][FMB_DIM_MAX]);
 

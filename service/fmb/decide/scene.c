@@ -50,7 +50,7 @@ struct scene_outcomes {
     double contact[BLOCK][2];
     double box[BLOCK][2][FMB_DIM_MAX];
     double point[BLOCK][1 + FMB_DIM_MAX];
-    unsigned point_frames[BLOCK][2]; /* of the answer of two bodies: the frames with that point */
+    unsigned point_frames[BLOCK][2]; /* in answers of bodies: the frames that have the point */
     struct fmb_gap gap[BLOCK];
 };
 
@@ -589,7 +589,7 @@ static void begin_block(struct fmb_scene_state *state)
 
 /* ---- Answers ---- */
 
-/* out := the numbers of pair of frames k in its bodies. */
+/* out := the indices of the frames of pair k in their bodies, those of pair n. */
 static void set_frames(const struct fmb_scene_state *state, size_t k, size_t n, unsigned out[2])
 {
     for (int side = 0; side < 2; side++) {
@@ -600,9 +600,9 @@ static void set_frames(const struct fmb_scene_state *state, size_t k, size_t n, 
     }
 }
 
-/* Includes the point of pair of frames k, which meet, in that of its bodies: that of the strongest
- * verdict, then of the lowest numbers of frames, those of the first body in the order of
- * gap_swaps() first. */
+/* Includes the point of pair of frames k, which is in contact, in the answer of its bodies, pair n.
+ * The pair of frames with the strongest verdict gives the point; among equal ones, the first by
+ * index, compared in the body that gap_swaps() puts first, then in the other. */
 static void include_point(struct fmb_scene_state *state, size_t k, size_t n)
 {
     struct scene_block *block = &state->block;

@@ -14,8 +14,8 @@
  *      add_crossings()        crossings of edges that are possible
  *   4. the same for the inner spans and crossings that are certain, in the lanes in which some
  *      outer one is not nearly as certain
- *   5. add_middles()         on request, the mean of the middles of all outer spans and of all
- *                             crossings: a point that both frames contain, and its time
+ *   5. add_middles()          on request, the mean of middles of outer spans and of crossings: a
+ *                             point that both frames contain, and its time
  *
  * Not here: why these points span the box, and the derivation of every error bound: BOXES.md, to
  * which the numbers (1) to (12) below refer; what follows from the ends (box_ends.h); the same in
@@ -49,7 +49,8 @@
 /* T, or its inverse, up to which products of two numbers do not overflow or underflow (5). */
 #define CLIP_EXACT_RANGE 0x1p100
 
-/* The largest error of a time, as a fraction of the window; fmb.h allows 1e-12 of it (12). */
+/* The largest error of a time of the mean. Times go from -1 to 1, so this is 0.45e-12 of the
+ * window; fmb.h allows 1e-12 of it (12). */
 #define CLIP_TIME 0.9e-12
 
 enum { CLIP_OUTER, CLIP_INNER, CLIP_BOUNDS };
@@ -506,7 +507,7 @@ struct clip_side {
 };
 
 /* Points of the intersection with their times, from -1 to 1: their sum, [time, coordinates], and
- * how many they are. */
+ * their number. */
 struct clip_mean {
     lanes sum[1 + FMB_DIM_MAX], count;
 };
@@ -516,8 +517,8 @@ INLINE void add_to_mean(lanes_mask counts, lanes x, lanes *sum)
     *sum += lanes_select(counts, CHECK_GIVEN(x), lanes_of(0));
 }
 
-/* Adds the middles of the outer spans of a frame that are as certain as the limits on positions and
- * times require. */
+/* Adds the middles of the outer spans of a frame that are certain enough for the limits on
+ * positions and times (12). */
 INLINE void add_middles(const struct kernel_traits traits, const struct clip_wire *wire,
                         const struct box_pair *box, const struct clip_side *side,
                         struct clip_mean *out)
@@ -529,7 +530,7 @@ INLINE void add_middles(const struct kernel_traits traits, const struct clip_wir
         const int v = wire->from[n], d = wire->direction[n];
         const lanes lost = (outer->to - outer->from) - (inner->to - inner->from);
         const bool is_path = traits.drifts && d == wire->directions - 1;
-        /* Not of no span, which is NAN. */
+        /* False if there is no span: it is NAN. */
         const lanes_mask counts = (lost * points->longest[d] <= box->whole) &
                                   (is_path ? lost <= CLIP_TIME : is_not((lanes_mask){0}));
         const lanes twice = outer->from + outer->to;
@@ -651,7 +652,7 @@ struct clip_crossing {
     lanes a_s[4], a_t[4], b_r[4], b_t[4];                  /* [edge]: parts of s X, r X and t X */
     lanes det, turned, inverse, error_s, error_r, error_t; /* |X|, X, 1 / |X|, bounds */
     lanes along[3], travel[3], radius[3]; /* of s X, t X; of the error of a position */
-    lanes_mask known, timed, crosses;     /* the position, the time of a crossing is known */
+    lanes_mask known, timed, crosses;     /* known: the position; timed: the time */
 };
 
 INLINE void set_parts(const struct kernel_traits traits, const struct clip_crossings *all,
@@ -735,9 +736,8 @@ INLINE lanes_mask is_possible(const struct kernel_traits traits, const struct cl
 }
 
 /* Adds the crossing to the reach of A: to the outer one where it is possible, to the inner one
- * where it is certain; to the mean where its time is known too. Returns the lanes
- * in which it is possible, but not certain, or has a position that is not known to within
- * box->whole. */
+ * where it is certain; to the mean where its time is known too. Returns the lanes in which it is
+ * possible, but not certain, or has a position that is not known to within box->whole. */
 INLINE lanes_mask add_crossing(const struct kernel_traits traits, const struct clip_crossing *from,
                                int m, int n, lanes reach[CLIP_BOUNDS][2][3], struct clip_mean *mean)
 {

@@ -2,8 +2,8 @@
  * arrays. The includer defines LANES, INLINED_NOT and KERNEL_NAME. */
 #include "kernel_box.h"
 
-/* Sets a time in seconds and a point of both frames from the mean, or, of cuboids along the axes,
- * from the box; NAN where these are not good. */
+/* Sets a time, in seconds, and a point of both frames: for axis-aligned cuboids the middle of the
+ * box, else the mean. The time is NAN where these are not good. */
 static void put_point(const struct kernel_traits traits, double duration, lanes_mask aligned,
                       const lanes box[2][3], const struct clip_mean *mean, lanes_mask good,
                       lanes point[1 + FMB_DIM_MAX])
@@ -21,7 +21,7 @@ static void put_point(const struct kernel_traits traits, double duration, lanes_
 }
 
 /* Sets the box, [lower, upper][axis]; NAN in lanes in which doubles do not prove the limit of
- * fmb.h, 0 along axes beyond dim. In the same way the point, unless it is NULL. */
+ * fmb.h, 0 along axes beyond dim. Sets the point too, unless it is NULL. */
 static void find_box(const struct kernel_traits traits, const struct clip_wire wire[2],
                      const struct frame_lanes frame[2], const struct pair_lanes *pair,
                      struct box_places *places, lanes box[2][3], lanes *point)

@@ -142,8 +142,8 @@ struct kernel_call {
     /* [count][lower, upper][axis], of pairs in contact; NAN where doubles do not prove the limit
      * of fmb.h. */
     double (*boxes)[2][FMB_DIM_MAX];
-    /* [count][time, coordinates], of pairs in contact; NULL, or NAN where doubles do not prove the
-     * limit of fmb.h. */
+    /* [count][time, coordinates], of pairs in contact, or NULL. The time is NAN where doubles do
+     * not prove the limits of fmb.h. */
     double (*points)[1 + FMB_DIM_MAX];
 };
 
@@ -151,8 +151,8 @@ enum { KERNEL_LANES = 8 };
 
 typedef void kernel_function(const struct kernel_call *call);
 
-/* Writes the boxes, and unless points is NULL the points, of pairs in contact of a kind of
- * kernel_box_kind(). */
+/* Writes the boxes of pairs in contact of a kind of kernel_box_kind(), and their points unless
+ * points is NULL. */
 typedef void kernel_box_function(const struct kernel_call *call, enum kernel_kind kind);
 
 /* Kernels of a single pair, for its verdict. */

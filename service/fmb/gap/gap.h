@@ -49,7 +49,7 @@ struct gap_pair {
     double least;  /* at most the largest coordinate of a vertex over the window */
 };
 
-/* Relative to that: the greatest width of an enclosure in doubles, and the greatest error of a
+/* Relative to "least": the greatest width of an enclosure in doubles, and the greatest error of a
  * deepest pair. fmb.h allows 1e-12. */
 #define GAP_LIMIT 0.9e-12
 
@@ -112,8 +112,8 @@ enum gap_outcome gap_depth(const struct gap_pair *pair, enum fmb_verdict verdict
  * are known: its deepest pair. Returns GAP_UNSURE if they are not within the limit of fmb.h. */
 enum gap_outcome gap_deepest(const struct gap_pair *pair, struct fmb_gap *out);
 
-/* Returns how far the witness points of a gap are from the deepest pair that the direction and the
- * upper bound say: |a - b + bounds[1] direction|. */
+/* Returns the error of the witness points of an overlapping pair, as a deepest pair:
+ * |a - b + bounds[1] direction|, where -bounds[1] is the depth. */
 INLINE double gap_stray(const struct fmb_gap *gap)
 {
     double way[FMB_DIM_MAX];

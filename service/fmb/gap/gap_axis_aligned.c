@@ -3,8 +3,8 @@
  * Method. The frames are boxes, given by their ends. On each side of each axis their distance is
  * the difference of an end of each, negative if they overlap there. P is a box with these
  * distances, so that the greatest of them is minus the depth. If exactly one of them is positive,
- * it is the distance of the frames. The witness points differ on the axis of the greatest distance
- * only.
+ * it is the distance of the frames. The witness points differ only on the axis of the greatest
+ * distance.
  *
  * Accuracy. Ends do not round: if one would, or a frame has an error, the pair is left to the other
  * steps. A difference is rounded outward if it rounds. */

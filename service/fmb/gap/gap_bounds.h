@@ -26,8 +26,8 @@ struct gap_edges {
     struct gap_edge of[2][GAP_EDGES], drift; /* of a negated */
 };
 
-/* Bounds of f, each negative and squared: f is not above minus the root by more than the margin.
- * 0: none; infinite or NaN: the normal is 0. */
+/* Upper bounds of f, each negative, as their squares: f exceeds minus the root by at most the
+ * margin. 0: none; infinite or NaN: the normal is 0. */
 struct gap_bounds {
     double margin;
     int count;

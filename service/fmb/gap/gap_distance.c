@@ -141,8 +141,9 @@ FLATTEN enum gap_outcome gap_distance(const struct gap_pair *pair, double farthe
     return gap_is_tight(pair, out->bounds) ? GAP_KNOWN : GAP_UNSURE;
 }
 
-/* A translation of b by the depth along the direction brings the origin to the boundary of P. The
- * point of P next to it is then 0 up to rounding, and its weights give the deepest pair. */
+/* A translation of b by the depth along the direction moves P so that the origin is on its
+ * boundary. The nearest point of P is then 0 up to rounding, and its weights give the deepest pair.
+ */
 FLATTEN enum gap_outcome gap_deepest(const struct gap_pair *pair, struct fmb_gap *out)
 {
     const double upper = out->bounds[1], close = 0x1p-47 * pair->reach;

@@ -111,7 +111,8 @@ static bool try_subset(struct integer_simplex *simplex, const int member[], int 
 }
 
 /* Tries the next subset of the corners; the last corner is in all of them. If the nearest point is
- * inside this subset, reduces the simplex to it. Returns whether it is. */
+ * inside this subset, reduces the simplex to it. Returns whether it is. Corners that were given are
+ * tried all together; if the nearest point is not inside, only the first is kept. */
 static bool reduce(struct integer_simplex *simplex)
 {
     const int last = simplex->count - 1;

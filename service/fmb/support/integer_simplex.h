@@ -25,7 +25,7 @@ struct integer_corner {
 struct integer_simplex {
     int count;
     unsigned subset; /* bits: the subset of the corners to be tried next */
-    bool guessed;    /* no subset was tried yet, and the nearest point may be inside all corners */
+    bool guessed;    /* the corners were given: the nearest point is expected inside all of them */
     bool zero;       /* the point is the origin */
     struct integer_corner pool[INTEGER_CORNERS + 1];
     struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first count: the simplex */
@@ -45,8 +45,8 @@ typedef void integer_support(void *context, mpz_t n[3], struct integer_corner *o
  *
  * In:  toward   any direction: the search starts from the corner with the least toward . p
  *      context  passed to support
- *      count    at least 1: simplex->pool has so many vertices of P, and the nearest point is
- *               expected inside of them */
+ *      count    at least 1: vertices of P at the beginning of simplex->pool; the nearest point is
+ *               expected inside their convex hull */
 void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
                            integer_support *support, void *context);
 void integer_simplex_begin_near(struct integer_simplex *simplex, int count);

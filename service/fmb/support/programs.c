@@ -1113,9 +1113,9 @@ static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out
         mpz_neg(e->normal[1][axis], n[axis]);
     set_corner(e, price_difference(e, false), out);
 }
+
 /* Sets the proof from the nearest point, and the verdict from its distance and the sum of the
- * radii.
- */
+ * radii. */
 static void prove_by_nearest(struct programs *e)
 {
     struct programs_proof *proof = &e->proof;
@@ -1154,8 +1154,8 @@ void programs_nearest_time(struct programs *e, double time[2])
                                         end ? ROUND_UP : ROUND_DOWN, e->minor);
 }
 
-/* The point is a + (b - a) r_A / R, for the points a of A and b of B that the weights give, R the
- * sum of the radii r_A and r_B. If it is 0, the nearest point b - a is 0 too. */
+/* The point is a + (b - a) r_A / R, for the points a of A and b of B that the weights give, with R
+ * the sum of the radii r_A and r_B. If R is 0, so is b - a. */
 void programs_nearest_point(struct programs *e, double point[1 + FMB_DIM_MAX])
 {
     const struct integer_simplex *simplex = &e->simplex;

@@ -71,9 +71,8 @@ struct programs_proof *programs_proof(struct programs *programs);
  */
 void programs_nearest_time(struct programs *programs, double time[2]);
 
-/* Sets point to a time and a point that both frames contain then, as fmb_answer.point: of a
- * complete decision by the nearest point, of frames that meet. It is rounded down from the exact
- * one. */
+/* Sets point, as fmb_answer.point, of a complete decision by the nearest point, of frames in
+ * contact: the exact time and coordinates, each rounded down. */
 void programs_nearest_point(struct programs *programs, double point[1 + FMB_DIM_MAX]);
 
 /* Sets the answer of a complete decision: the verdict, and if the frames meet, the contact and the

@@ -29,7 +29,7 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
 {
     support_decision_none(out);
     out->swapped = support_order(frames, &out->frames);
-    out->searched = out->by_nearest = out->pointing = false;
+    out->searched = out->by_nearest = out->computes_point = false;
     out->cores = 0;
     out->ends = (struct support_round_ends){.time = {NAN, NAN}, .guess = {NAN, NAN}};
     out->bounded = bounded;
@@ -38,7 +38,7 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
     support_pair_set(&out->frames, &out->pair);
 }
 
-/* Copies the points of D that the search found, if there was one. Returns how many. */
+/* Copies the columns of the vertices of a simplex. Returns their number. */
 static unsigned columns_of(const struct support_simplex *simplex,
                            struct support_column out[FMB_DIM_MAX + 1])
 {
@@ -54,8 +54,9 @@ static struct programs *begin_nearest(const struct support_decision *decision)
     return programs_begin_nearest(&decision->pair, false, first, count);
 }
 
-/* Sets the point of a pair in contact, if it is wanted: by doubles if these prove it, else by the
- * programs, which it begins. Returns whether the decision is complete. */
+/* Sets the point of a pair in contact, if it is wanted and doubles prove it. Otherwise begins the
+ * programs that compute it, unless the decision is bounded. Returns whether the decision is
+ * complete. */
 static bool begin_point(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (!(decision->want & FMB_WANT_POINT) || answer->verdict == FMB_SEPARATED)
@@ -64,7 +65,7 @@ static bool begin_point(struct support_decision *decision, struct fmb_answer *an
     if (decision->searched &&
         support_common_point(&decision->pair, &decision->nearest, answer->point))
         return true;
-    decision->pointing = true;
+    decision->computes_point = true;
     if (!decision->bounded)
         decision->programs = begin_nearest(decision);
     return false;
@@ -100,7 +101,7 @@ static bool begin_gap_of(struct support_decision *decision, enum fmb_verdict cor
 /* Begins the gap of a pair whose verdict is known, if it is wanted, then the point. The gap of
  * frames with radii follows from the gap of their cores, so the verdict of the cores may have to be
  * decided first. Returns whether the decision is complete. */
-static bool begin_rest(struct support_decision *decision, struct fmb_answer *answer)
+static bool begin_gap_and_point(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (!(decision->want & FMB_WANT_GAP))
         return begin_point(decision, answer);
@@ -153,7 +154,7 @@ static bool round_begin(struct support_decision *decision, enum fmb_verdict core
     if (decision->searched)
         answer->verdict = support_round_verdict(&decision->pair, cores, &decision->nearest);
     if (answer->verdict && measure(decision, answer))
-        return begin_rest(decision, answer);
+        return begin_gap_and_point(decision, answer);
     if (!decision->bounded) {
         decision->by_nearest = true;
         decision->programs = begin_nearest(decision);
@@ -169,7 +170,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
         if (!support_round_times_step(&decision->times))
             return false;
         set_contact(decision, decision->times.ends.time, answer);
-        return begin_rest(decision, answer);
+        return begin_gap_and_point(decision, answer);
     }
     if (!programs_step(decision->programs))
         return false;
@@ -179,7 +180,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
         struct fmb_answer cores;
         programs_end(programs, &cores);
         decision->cores = cores.verdict;
-        return begin_rest(decision, answer);
+        return begin_gap_and_point(decision, answer);
     }
     double inside[2];
     answer->verdict = programs_proof(programs)->verdict;
@@ -187,7 +188,7 @@ static bool round_step(struct support_decision *decision, struct fmb_answer *ans
     programs_end(programs, NULL);
     decision->by_nearest = false;
     if (measure(decision, answer))
-        return begin_rest(decision, answer);
+        return begin_gap_and_point(decision, answer);
     support_round_times_begin(&decision->pair, inside, &decision->ends, &decision->times);
     return false;
 }
@@ -214,7 +215,7 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
     if (answer->verdict == FMB_OVERLAPPING)
         left = answer_in_doubles(pair, left, &nearest->simplex, answer);
     if (answer->verdict == FMB_SEPARATED || (answer->verdict == FMB_OVERLAPPING && left == 0))
-        return begin_rest(out, answer);
+        return begin_gap_and_point(out, answer);
     if (effort != SUPPORT_QUICK) {
         /* The guess is a simplex that contains the origin after it was moved in a little. The
          * facet through which the ray leaves is close to it, so few steps are left. */
@@ -228,9 +229,9 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
     return false;
 }
 
-bool support_decision_begin_rest(const struct frame_pair *frames, unsigned want,
-                                 enum fmb_verdict verdict, double farthest, bool bounded,
-                                 struct support_decision *out, struct fmb_answer *answer)
+bool support_decision_begin_gap_and_point(const struct frame_pair *frames, unsigned want,
+                                          enum fmb_verdict verdict, double farthest, bool bounded,
+                                          struct support_decision *out, struct fmb_answer *answer)
 {
     set_pair(frames, want, farthest, bounded, out);
     answer->verdict = verdict;
@@ -240,14 +241,14 @@ bool support_decision_begin_rest(const struct frame_pair *frames, unsigned want,
         out->cores = FMB_SEPARATED;
     else if (out->searched)
         out->cores = support_search(&out->pair, INFINITY, &out->nearest);
-    return begin_rest(out, answer);
+    return begin_gap_and_point(out, answer);
 }
 
 bool support_decision_step(struct support_decision *decision, struct fmb_answer *answer)
 {
     if (decision->gap)
         return take_gap(decision, support_gap_step(decision->gap, &answer->gap), answer);
-    if (decision->pointing) {
+    if (decision->computes_point) {
         if (!programs_step(decision->programs))
             return false;
         programs_nearest_point(decision->programs, answer->point);
@@ -261,7 +262,7 @@ bool support_decision_step(struct support_decision *decision, struct fmb_answer 
         return false;
     programs_end(decision->programs, answer);
     decision->programs = NULL;
-    return begin_rest(decision, answer);
+    return begin_gap_and_point(decision, answer);
 }
 
 void support_decision_end(struct support_decision *decision)

@@ -22,7 +22,7 @@ struct support_decision {
     struct frame_pair frames; /* in the order of support_order() */
     bool swapped, searched;   /* searched: nearest is the result of a search */
     bool bounded;
-    bool pointing; /* programs looks for the point */
+    bool computes_point; /* programs computes the point */
     unsigned want;
     double farthest;
     struct support_pair pair;
@@ -55,9 +55,9 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
 
 /* The same for the gap and the point alone. In: want, bits of FMB_WANT_GAP and FMB_WANT_POINT;
  * verdict, of the pair; bounded: as with SUPPORT_QUICK. */
-bool support_decision_begin_rest(const struct frame_pair *frames, unsigned want,
-                                 enum fmb_verdict verdict, double farthest, bool bounded,
-                                 struct support_decision *out, struct fmb_answer *answer);
+bool support_decision_begin_gap_and_point(const struct frame_pair *frames, unsigned want,
+                                          enum fmb_verdict verdict, double farthest, bool bounded,
+                                          struct support_decision *out, struct fmb_answer *answer);
 
 /* Performs a step of a decision that is not complete. It takes some ten microseconds for numbers of
  * similar size, and less than a millisecond for any. Returns whether it is complete, with *answer

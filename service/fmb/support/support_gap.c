@@ -88,15 +88,15 @@ static enum gap_outcome distance(const struct support_gap *gap,
 
 /* ---- Distance on the grid ---- */
 
-/* D translated by -at. */
-struct translated {
+/* D on the grid, translated by -at. */
+struct translated_grid {
     const struct support_gap *gap;
     const double *at;
 };
 
 static void grid_support(void *context, mpz_t n[3], struct integer_corner *out)
 {
-    const struct translated *of = context;
+    const struct translated_grid *of = context;
     const struct support_gap *gap = of->gap;
     double direction[FMB_DIM_MAX];
     struct support_vertex vertex;
@@ -118,12 +118,12 @@ static void set_direction(const struct support_gap *gap, struct fmb_gap *out)
     support_depth_end(&depth, out);
 }
 
-/* Finds the point of D nearest to a point, with every vertex rounded to the grid. Sets its
- * direction from there. Returns false if it is that point. */
+/* Finds the point of D nearest to the point at, with every vertex rounded to the grid, and sets the
+ * direction from at to it. If they are equal, returns false, and sets no direction. */
 static bool nearest_on_grid(const struct support_gap *gap, const double at[FMB_DIM_MAX],
                             struct support_nearest *out)
 {
-    struct translated of = {gap, at};
+    struct translated_grid of = {gap, at};
     struct integer_simplex simplex;
     integer_simplex_each(&simplex, mpz_init);
     mpz_set_ui(simplex.other[0], 1);
@@ -144,7 +144,8 @@ static bool nearest_on_grid(const struct support_gap *gap, const double at[FMB_D
     return apart;
 }
 
-/* The point of D nearest to the origin. If that is the origin, the depth gives the direction. */
+/* Finds the point of D nearest to the origin. If that is the origin, the depth gives the direction.
+ */
 static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
 {
     const double origin[FMB_DIM_MAX] = {0};
@@ -160,15 +161,16 @@ static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct f
 
 /* ---- Deepest pair ---- */
 
-/* Whether the witness points are the deepest pair, within the limit of fmb.h. */
+/* Whether the witness points are a deepest pair, within the limit of fmb.h. */
 static bool is_deepest(const struct support_gap *gap, const struct fmb_gap *out)
 {
     return gap_stray(out) + support_witness_error(gap) <= gap->tight;
 }
 
 /* Sets the witness points of a pair that overlaps and does not drift, whose bounds and direction
- * are known: the depth along the direction is a point of the boundary of D, and the point of D next
- * to it is that point, up to rounding. bounded: the grid, which allocates, is not used. */
+ * are known. The upper bound times the direction is a point on the boundary of D, so the nearest
+ * point of D is the same up to rounding; its weights give the deepest pair. bounded: the grid,
+ * which allocates, is not used. */
 static enum gap_outcome set_deepest(const struct support_gap *gap, bool bounded,
                                     struct fmb_gap *out)
 {
@@ -227,17 +229,19 @@ static bool set_gap(const struct support_pair *pair, struct support_gap *out)
  *
  * The weights of a search give points a and b of the cores at one time, x = b - a a point of D.
  *
- * Let the distance of x from the origin be at most the sum R of the radii. The point a + (b - a)
- * r_A / R is within r_A of a and within r_B of b.
+ * If the distance of x from the origin is at most the sum R of the radii, the point
+ * a + (b - a) r_A / R is within r_A of a and within r_B of b.
  *
  * Otherwise let the origin be inside the simplex of the search, at least h from its facets. The
- * simplex contains -x h / |x|, with other weights. The mean of both, with |x| / (h + |x|) of the
- * other weights, gives the origin: a point that both cores contain at one time. This part is less
- * than |x| / h. So the point is at most that part of twice the reach of a core, and of its way over
- * the window, from a or b, and the time that part of the window from theirs. */
+ * simplex then contains -x h / |x|, with other weights. The weighted mean of both points, with the
+ * share |x| / (h + |x|) for the second one, is the origin: its weights give one point that both
+ * cores contain at one time. The share is less than |x| / h. So on each axis that point is at most
+ * this share of the spread of a core (spread_of()) from a or b, and its time at most this share of
+ * the window from theirs. */
 
-/* Returns at least the greatest distance, along an axis, of two vertices of frame f in the simplex
- * of a search; late: how far it moves over the window. */
+/* Returns an upper bound, on every axis, of the distance between any two points of frame f that
+ * weights of the simplex of a search give: the extent of its vertices, plus the travel of the frame
+ * over the window. */
 static double spread_of(const struct support_gap *gap, const struct support_simplex *simplex, int f)
 {
     double ends[2][FMB_DIM_MAX], spread = 0;
@@ -254,7 +258,8 @@ static double spread_of(const struct support_gap *gap, const struct support_simp
     return spread + support_witness_error(gap);
 }
 
-/* Of the window; fmb.h allows 1e-12, and the rounding of seconds is left. */
+/* The largest error of a time, as a fraction of the window. fmb.h allows 1e-12; the remainder
+ * covers the rounding to seconds. */
 static const double time_limit = 0.9e-12;
 
 bool support_common_point(const struct support_pair *pair, const struct support_nearest *nearest,

@@ -26,10 +26,12 @@ struct support_gap {
     double scale; /* the grid of a mesh: a power of two */
 };
 
-/* Returns how far the witness points are from points of the frames at their time, both together. */
+/* Returns an upper bound of the sum of the distances of the two witness points from their frames,
+ * at their time. */
 double support_witness_error(const struct support_gap *gap);
 
-/* Sets the witness points of a point of D, their time, and the upper bound of the distance. */
+/* Sets the witness points, and their time, that the weights of a point of D give, and the upper
+ * bound of the distance. */
 void support_witness(const struct support_gap *gap, const struct support_nearest *nearest,
                      struct fmb_gap *out);
 

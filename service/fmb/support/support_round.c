@@ -355,7 +355,7 @@ static double end_of(const struct support_view *view, int axis, double sign,
     end = sum_up(end, scale * position);
     end = sum_up(end, scale * path);
     end = sum_up(end, scale * view->placed.frame->radius);
-    /* Less than all doubles: the least one is the next above. */
+    /* An end below all doubles is rounded up to the least one. */
     return isnan(end) ? INFINITY : fmax(end / scale, -DBL_MAX);
 }
 
@@ -381,8 +381,8 @@ void support_round_box(const struct support_pair *pair, const double contact[2],
  * coordinates and radii. The gap of the cores was held to 0.9 of the limit of fmb.h on the width;
  * the remaining tenth is more than this.
  *
- * The points of an overlap move by the radii along the direction, so that a - b stays what the
- * depth and the direction say. */
+ * The witness points of an overlapping pair are moved by the radii along the direction, so that
+ * a - b is still the depth times the direction. */
 void support_round_gap(const struct frame_pair *frames, int exponent, enum fmb_verdict verdict,
                        bool deepest, struct fmb_gap *gap)
 {

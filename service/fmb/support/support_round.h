@@ -45,8 +45,8 @@ struct programs;
 enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb_verdict cores,
                                        const struct support_nearest *nearest);
 
-/* Returns an upper bound of the distance of D from the origin, that of the point that a search
- * found; INFINITY if there is none. */
+/* Returns an upper bound of the distance of D from the origin: that of the point that a search
+ * found. INFINITY if it found none. */
 double support_distance_above(const struct support_pair *pair,
                               const struct support_nearest *nearest);
 

@@ -75,8 +75,8 @@ void support_centre(const struct support_pair *pair, double out[FMB_DIM_MAX])
 
 #define SUPPORT_DETERMINANT 1.2 /* as above */
 
-/* Returns the determinant of dim points, less its error: nearer to 0 than the exact one, with its
- * sign; 0 if that is not certain. */
+/* Returns the determinant of dim points, reduced by its error: no farther from 0 than the exact
+ * one, and of the same sign; 0 if the sign is not certain. */
 static double determinant_of(const struct support_pair *pair,
                              const struct support_vertex *const p[FMB_DIM_MAX])
 {
@@ -98,7 +98,7 @@ static double determinant_of(const struct support_pair *pair,
     return value > bound ? value - bound : value < -bound ? value + bound : 0;
 }
 
-/* The dim vertices of a facet: all but one, in order. */
+/* Sets the dim vertices of a facet: all but one, in order. */
 static void set_facet(const struct support_simplex *simplex, int dim, int omitted,
                       const struct support_vertex *out[FMB_DIM_MAX])
 {
@@ -124,9 +124,9 @@ bool support_simplex_contains_origin(const struct support_pair *pair,
     return true;
 }
 
-/* Returns at least the area of a facet in 3D, twice, or its length in 2D. Each edge is off by 2 e,
- * and rounded by far less, so that their cross product is off by 2 e (|x| + |y|) + 4 e^2 for edges
- * x and y, and rounded by less than e / 4 of their lengths, since e >= 32 u |x| / 2. */
+/* Returns an upper bound of twice the area of a facet; in 2D, of its length. Each edge is off by
+ * 2 e, and rounded by far less, so that their cross product is off by 2 e (|x| + |y|) + 4 e^2 for
+ * edges x and y, and rounded by less than e / 4 of their lengths, since e >= 32 u |x| / 2. */
 static double size_of_facet(const struct support_pair *pair,
                             const struct support_vertex *const p[FMB_DIM_MAX])
 {
@@ -143,7 +143,7 @@ static double size_of_facet(const struct support_pair *pair,
     return sqrt(vec3_dot(normal, normal)) + 3 * e * (length[0] + length[1] + 3 * e);
 }
 
-/* A facet is the determinant of its points divided by its size from the origin. */
+/* The distance of a facet from the origin is the determinant of its points divided by its size. */
 double support_simplex_depth(const struct support_pair *pair, const struct support_simplex *simplex)
 {
     double least = INFINITY;

@@ -65,8 +65,8 @@ static inline double support_separating_distance(const struct support_pair *pair
 bool support_simplex_contains_origin(const struct support_pair *pair,
                                      const struct support_simplex *simplex);
 
-/* Returns a lower bound of the distance of the origin from the facets of a simplex that surely
- * contains it; 0 for any other. */
+/* Returns a lower bound of the distance from the origin to the facets of a simplex that certainly
+ * contains it; 0 for any other simplex. */
 double support_simplex_depth(const struct support_pair *pair,
                              const struct support_simplex *simplex);
 

@@ -1,4 +1,4 @@
-/* The witness points of a pair by its vertices, and the upper bound of its distance.
+/* Witness points of a pair by its vertices, and the upper bound of the distance.
  *
  * Accuracy, with u = 2^-53. A witness point is a sum of weights times vertices R v, of the position
  * and of the displacement times a fraction of the window. Each R v is off by at most 18.3 u r, and
@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-/* Of the difference of the witness points, relative to "far". */
+/* The error of the difference of the witness points, relative to "far". */
 #define SUPPORT_WITNESS 0x1p-47
 
 double support_witness_error(const struct support_gap *gap)
