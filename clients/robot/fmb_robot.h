@@ -125,6 +125,89 @@ size_t fmb_robot_moved(const struct fmb_robot_scene *scene);
  * Cost: O(links + joints). */
 int fmb_robot_place(struct fmb_robot_scene *scene, const double *q);
 
+/* ---- Paths ----
+ *
+ * A path is proven edge by edge: from one row of joint values to the next, values run straight.
+ *
+ *     struct fmb_robot_path *path;
+ *     struct fmb_robot_edge edge;
+ *     if (fmb_robot_path_begin(scene, 0.005, &path) != 0)
+ *         fail(fmb_robot_path_why(path));
+ *     for (size_t k = 0; k + 1 < rows; k++) {
+ *         if (fmb_robot_path_edge(path, q[k], q[k + 1]) != 0)
+ *             fail(fmb_robot_path_why(path));
+ *         while (!fmb_robot_path_step(path, &edge))
+ *             ;
+ *         ... edge.verdict ...
+ *     }
+ *
+ * The motion is that of the doubles given, over the real numbers: joints turn by their values, with
+ * real sines and cosines. There is no touching here: pairs that come closer than the errors of
+ * doubles, some 1e-12 of the lengths, without overlapping by more, are undecided. The README says
+ * what is promised.
+ *
+ * These functions may change in any version. */
+
+/* Proves paths of a robot among the bodies of its scene, all pairs but the ignored ones. Bodies of
+ * the world are at rest. Pairs that do not move relative to each other are no part of the path: two
+ * bodies of the world are not looked at; others are decided here, once, at home.
+ * In:  scene      must outlive the path; not changed, and not used by another thread meanwhile
+ *      clearance  to be proven; 0: none, and the clearance of an edge is found to a tenth
+ * Out: *out       set in any case, for fmb_robot_path_why(); to be freed
+ * Returns 0; or -1 after an error.
+ * Cost: O(pairs of frames). */
+struct fmb_robot_path;
+int fmb_robot_path_begin(struct fmb_robot_scene *scene, double clearance,
+                         struct fmb_robot_path **out);
+void fmb_robot_path_free(struct fmb_robot_path *path); /* may be NULL, or within an edge */
+
+/* Returns what was wrong in the last call that failed, as lines separated by line feeds. */
+const char *fmb_robot_path_why(struct fmb_robot_path *path);
+
+/* Returns the number of pairs of frames that are looked at on every edge. */
+size_t fmb_robot_path_pairs(const struct fmb_robot_path *path);
+
+/* Returns the number of pairs of placements that meet and do not move relative to each other:
+ * overlapping ones are in contact on the whole path. */
+struct fmb_robot_touch {
+    unsigned a, b;
+    enum fmb_verdict verdict;
+};
+size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
+                              const struct fmb_robot_touch **touches);
+
+/* Begins an edge; a former one is abandoned.
+ * In:  from, to  [n], as of fmb_robot_place(); a continuous joint turns by at most pi
+ * Returns 0; or -1 after an error.
+ * Cost: O(pairs of frames). */
+int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const double *to);
+
+enum fmb_robot_verdict {
+    FMB_ROBOT_FREE = 1,     /* all pairs are at least `clearance` apart, at all times */
+    FMB_ROBOT_NEAR = 2,     /* no contact, but the wanted clearance is not kept */
+    FMB_ROBOT_CONTACT = 3,  /* the first contact is within `at`; at its end the pair overlaps */
+    FMB_ROBOT_UNDECIDED = 4 /* free before `at`; within it neither could be proven */
+};
+
+struct fmb_robot_edge {
+    enum fmb_robot_verdict verdict;
+    /* Fractions of the edge. Free: all of it. Near: the time of `closest`. Undecided: at most 2^-30
+     * long, unless the edge took half a million steps. */
+    double at[2];
+    double
+        clearance;  /* a lower bound of the least gap; 0 unless free or near. Infinite: no pairs */
+    double closest; /* an upper bound of the gap at a time that was looked at; infinite: none was */
+    bool has_pair;
+    size_t a, b; /* placements: of the contact, of the undecided interval, or else of `closest` */
+};
+
+/* Continues an edge.
+ * Out: *out  the answer, if it returns 1
+ * Returns 1 when the edge is complete; 0: to be called again. After that, and before
+ * fmb_robot_path_edge(), it returns 0.
+ * Cost: some 0.1 ms; O(pairs of frames) where the search for the first contact begins. */
+int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,495 @@
+/* fmb_robot_path_*: proves edges of a path. Model: path_model.c; bounds: path_edge.c.
+ *
+ * Search. An entry is a pair and an interval of the edge, of length 2^-level. A step takes one and
+ * tries to prove that the pair is farther apart than the target throughout: by the spheres in the
+ * middle; by the gap in the middle, less half of the way that it can change; by the direction of
+ * that gap, carried by a, by b, or as the product of an edge of each. Otherwise both halves become
+ * entries.
+ *
+ * Phase LEAST takes the entry with the least lower bound first. The target is the wanted clearance,
+ * or nine tenths of the least gap that was seen. If a pair meets, or an interval stays open at
+ * PATH_LEVEL_MAX, phase FIRST begins: the earliest entry first, and the target is 0. So everything
+ * before an entry is proven when it is taken, and the first contact is enclosed by the entry and
+ * the earliest pose that meets. */
+#include "path.h"
+
+#include "allocate.h"
+#include "number.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAST, FIRST, DONE };
+
+enum {
+    STEP_ENTRIES = 64, /* of a step */
+    LEAST_ENTRIES =
+        1 << 17, /* of phase LEAST, and of phase FIRST of an edge: the bound of its work */
+    FIRST_ENTRIES = 1 << 19,
+    CONTACT_LEVEL = 16 /* a first contact is enclosed to 2^-16 of the edge */
+};
+
+/* ---- Entries ---- */
+
+static bool comes_before(const struct path_entry *a, const struct path_entry *b)
+{
+    return a->key != b->key ? a->key < b->key : a->bounds < b->bounds;
+}
+
+static void push(struct fmb_robot_path *path, struct path_entry entry)
+{
+    path->heap =
+        allocate_grow(path->heap, &path->heap_capacity, path->heap_count + 1, sizeof *path->heap);
+    size_t i = path->heap_count++;
+    for (; i > 0 && comes_before(&entry, &path->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        path->heap[i] = path->heap[(i - 1) / 2];
+    path->heap[i] = entry;
+}
+
+static struct path_entry pop(struct fmb_robot_path *path)
+{
+    struct path_entry *heap = path->heap;
+    const struct path_entry first = heap[0], last = heap[--path->heap_count];
+    size_t i = 0, next;
+    while ((next = 2 * i + 1) < path->heap_count) {
+        next += next + 1 < path->heap_count && comes_before(&heap[next + 1], &heap[next]);
+        if (!comes_before(&heap[next], &last))
+            break;
+        heap[i] = heap[next];
+        i = next;
+    }
+    heap[i] = last;
+    return first;
+}
+
+static double target(const struct fmb_robot_path *path)
+{
+    if (path->phase == FIRST)
+        return 0;
+    return path->wanted > 0 && path->closest >= path->wanted ? path->wanted : 0.9 * path->closest;
+}
+
+static void prove(struct fmb_robot_path *path, unsigned a, unsigned b, double low, int level,
+                  double clearance, const struct path_direction *direction)
+{
+    path->proven = fmin(path->proven, clearance);
+    if (!path->recorded)
+        return;
+    path->leaves = allocate_grow(path->leaves, &path->leaf_capacity, path->leaf_count + 1,
+                                 sizeof *path->leaves);
+    path->leaves[path->leaf_count++] = (struct path_leaf){a, b, level, low, *direction};
+}
+
+/* ---- Gaps ---- */
+
+static void set_placement(const struct fmb_robot_path *path, const struct path_pose *poses,
+                          unsigned part, struct fmb_placement *out)
+{
+    const struct path_pose *pose = &poses[path->parts[part].node];
+    const bool turned = pose->q[1] != 0 || pose->q[2] != 0 || pose->q[3] != 0;
+    *out = (struct fmb_placement){.body = &path->parts[part].body,
+                                  .orientation_count = turned ? 4 : 0};
+    memcpy(out->position, pose->p, sizeof pose->p);
+    if (turned)
+        memcpy(out->orientation, pose->q, sizeof pose->q);
+}
+
+/* Sets the gap of a pair at a time, with the error of the poses in its bounds, and the least one
+ * seen. Returns false if it cannot be computed. */
+static bool measure(struct fmb_robot_path *path, const struct path_bounds *bounds, double time,
+                    struct fmb_gap *out)
+{
+    const struct path_pose *poses = path_poses(path, time);
+    struct fmb_placement a, b;
+    struct fmb_answer answer;
+    set_placement(path, poses, bounds->a, &a);
+    set_placement(path, poses, bounds->b, &b);
+    if (fmb_decide(fmb_method_default(), &a, &b, 0, FMB_WANT_GAP, &answer) != FMB_OK)
+        return false;
+    *out = answer.gap;
+    out->bounds[0] -= bounds->slack;
+    out->bounds[1] += bounds->slack;
+    if (out->bounds[1] < path->closest) {
+        path->closest = out->bounds[1];
+        path->closest_at = time;
+        path->closest_pair[0] = bounds->a;
+        path->closest_pair[1] = bounds->b;
+    }
+    if (out->bounds[1] < 0 && time < path->hit) {
+        path->hit = time;
+        path->hit_pair[0] = bounds->a;
+        path->hit_pair[1] = bounds->b;
+    }
+    return true;
+}
+
+/* ---- Directions ---- */
+
+/* Counts the vertices of a part that are farthest along n within a tolerance, and names the first
+ * two. */
+static unsigned count_supports(const struct path_part *part, const double n[3], unsigned first[2])
+{
+    const struct fmb_frame *hull = &part->body.one;
+    const double *x = hull->vertices, *y = x + hull->vertex_stride, *z = y + hull->vertex_stride;
+    double most = -INFINITY;
+    unsigned count = 0;
+    for (unsigned i = 0; i < hull->vertex_count; i++)
+        most = fmax(most, n[0] * x[i] + n[1] * y[i] + n[2] * z[i]);
+    most -= 1e-9 * part->ball;
+    for (unsigned i = 0; i < hull->vertex_count; i++)
+        if (n[0] * x[i] + n[1] * y[i] + n[2] * z[i] >= most) {
+            if (count < 2)
+                first[count] = i;
+            count++;
+        }
+    return count;
+}
+
+static void set_edge(const struct path_part *part, const unsigned end[2], double out[3])
+{
+    const struct fmb_frame *hull = &part->body.one;
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *x = hull->vertices + (size_t) i * hull->vertex_stride;
+        out[i] = x[end[1]] - x[end[0]];
+        square += out[i] * out[i];
+    }
+    for (int i = 0; i < 3; i++)
+        out[i] /= sqrt(square);
+}
+
+/* Lists the ways to carry a direction n from a to b, most promising first. Returns their number. */
+static int list_directions(const struct fmb_robot_path *path, const struct path_bounds *bounds,
+                           const struct path_pose *poses, const double n[3],
+                           struct path_direction out[3])
+{
+    const struct path_part *part[2] = {&path->parts[bounds->a], &path->parts[bounds->b]};
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    unsigned count[2], first[2][2];
+    double local[2][3], edge[2][3];
+    int found = 0;
+    path_turn_back(poses[part[0]->node].r, n, local[0]);
+    path_turn_back(poses[part[1]->node].r, back, local[1]);
+    for (int end = 0; end < 2; end++)
+        count[end] = count_supports(part[end], local[end], first[end]);
+    if (count[0] == 2 && count[1] == 2) {
+        struct path_direction *e = &out[found];
+        *e = (struct path_direction){.kind = PATH_E};
+        for (int end = 0; end < 2; end++) {
+            set_edge(part[end], first[end], e->n[end]);
+            path_turn(poses[part[end]->node].r, e->n[end], edge[end]);
+        }
+        double along = 0, square = 0;
+        for (int i = 0; i < 3; i++) {
+            const int k = (i + 1) % 3, l = (i + 2) % 3;
+            const double c = edge[0][k] * edge[1][l] - edge[0][l] * edge[1][k];
+            along += c * n[i];
+            square += c * c;
+        }
+        for (int i = 0; i < 3 && along < 0; i++)
+            e->n[0][i] = -e->n[0][i];
+        found += square > 0.0025; /* not nearly parallel */
+    }
+    const int better =
+        count[1] > count[0] || (count[1] == count[0] && bounds->curve[1] < bounds->curve[0]);
+    for (int k = 0; k < 2; k++) {
+        const int end = better ^ k;
+        out[found] = (struct path_direction){.kind = end ? PATH_B : PATH_A};
+        for (int i = 0; i < 3; i++)
+            out[found].n[0][i] = end ? -local[1][i] : local[0][i];
+        found++;
+    }
+    return found;
+}
+
+/* ---- Phases ---- */
+
+/* Enters all pairs that their spheres do not prove. */
+static void enter_pairs(struct fmb_robot_path *path)
+{
+    const struct path_direction spheres = {.kind = PATH_SPHERES};
+    const struct path_pose *poses = path_poses(path, 0.5);
+    path->live_count = path->heap_count = path->leaf_count = path->work = 0;
+    path->proven = INFINITY;
+    double least = INFINITY, bound = -INFINITY;
+    for (int pass = path->phase == LEAST ? 0 : 1; pass < 2; pass++) {
+        struct path_bounds nearest;
+        for (size_t k = 0; k < path->family_count; k++) {
+            const struct path_family *family = &path->families[k];
+            const struct path_part *a = &path->parts[family->a];
+            const double half = path_family_speed(path, family) / 2;
+            double centre[2][3];
+            path_centre(poses, a, centre[0]);
+            for (size_t i = family->first; i < family->first + family->count; i++) {
+                const struct path_part *b = &path->parts[path->partner[i]];
+                path_centre(poses, b, centre[1]);
+                const double x = centre[1][0] - centre[0][0], y = centre[1][1] - centre[0][1],
+                             z = centre[1][2] - centre[0][2];
+                bound = sqrt(x * x + y * y + z * z) * (1 - 0x1p-36) - a->ball - b->ball - half -
+                        path_slack(path, family->a, path->partner[i]);
+                if (pass == 0 && bound < least) {
+                    least = bound;
+                    path_bounds_of(path, &family->chain, family->a, path->partner[i], &nearest);
+                }
+                if (pass == 0)
+                    continue;
+                if (bound > 0 && bound >= target(path)) {
+                    prove(path, family->a, path->partner[i], 0, 0, bound, &spheres);
+                    continue;
+                }
+                path->live = allocate_grow(path->live, &path->live_capacity, path->live_count + 1,
+                                           sizeof *path->live);
+                path_bounds_of(path, &family->chain, family->a, path->partner[i],
+                               &path->live[path->live_count]);
+                push(path, (struct path_entry){path->phase == LEAST ? bound : 0, 0,
+                                               path->live_count++, 0});
+            }
+        }
+        struct fmb_gap gap;
+        if (pass == 0 && least < INFINITY)
+            measure(path, &nearest, 0.5, &gap);
+    }
+}
+
+static void begin_first(struct fmb_robot_path *path)
+{
+    struct fmb_gap gap;
+    path->phase = FIRST;
+    enter_pairs(path);
+    for (size_t i = 0; i < path->live_count && path->hit > 0; i++) {
+        const struct path_bounds *bounds = &path->live[i];
+        const struct path_direction spheres = {.kind = PATH_SPHERES};
+        if (path_prove(path, bounds, &spheres, -0x1p-61, 60) <= 0)
+            measure(path, bounds, 0, &gap);
+    }
+}
+
+/* Whether an entry is proven; if not, *gap is the gap in its middle, and *bound a lower bound of
+ * the gap in the interval. */
+static bool prove_entry(struct fmb_robot_path *path, const struct path_entry *entry,
+                        struct fmb_gap *gap, double *bound)
+{
+    const struct path_bounds *bounds = &path->live[entry->bounds];
+    const double w = ldexp(1, -entry->level), middle = entry->low + w / 2;
+    struct path_direction direction = {.kind = PATH_SPHERES}, carried[3];
+    double proven = path_prove(path, bounds, &direction, entry->low, entry->level);
+    *bound = -INFINITY;
+    if (proven > 0 && proven >= target(path)) {
+        prove(path, bounds->a, bounds->b, entry->low, entry->level, proven, &direction);
+        return true;
+    }
+    if (!measure(path, bounds, middle, gap))
+        *gap = (struct fmb_gap){.bounds = {-INFINITY, INFINITY}};
+    const struct path_pose *poses = path_poses(path, middle);
+    proven = gap->bounds[0] - bounds->speed * w / 2;
+    *bound = proven;
+    direction.kind = PATH_MIDDLE;
+    path_turn_back(poses[path->parts[bounds->a].node].r, gap->direction, direction.n[0]);
+    if (proven > 0 && proven >= target(path)) {
+        prove(path, bounds->a, bounds->b, entry->low, entry->level, proven, &direction);
+        return true;
+    }
+    if (!(gap->bounds[0] > target(path)))
+        return false;
+    const int count = list_directions(path, bounds, poses, gap->direction, carried);
+    for (int i = 0; i < count; i++) {
+        const int k = carried[i].kind == PATH_A ? 0 : carried[i].kind == PATH_B ? 1 : 2;
+        if (gap->bounds[0] - bounds->curve[k] * w * w / 8 < target(path))
+            continue;
+        proven = path_prove(path, bounds, &carried[i], entry->low, entry->level);
+        *bound = fmax(*bound, proven);
+        if (proven > 0 && proven >= target(path)) {
+            prove(path, bounds->a, bounds->b, entry->low, entry->level, proven, &carried[i]);
+            return true;
+        }
+        direction = proven == *bound ? carried[i] : direction;
+    }
+    /* An interval so short that the errors of doubles count is as good as proven by its bound. */
+    if (entry->level >= PATH_LEVEL_MAX && *bound > 0) {
+        prove(path, bounds->a, bounds->b, entry->low, entry->level, *bound, &direction);
+        return true;
+    }
+    return false;
+}
+
+static void halve(struct fmb_robot_path *path, const struct path_entry *entry, double bound)
+{
+    const double half = ldexp(1, -entry->level - 1);
+    for (int k = 0; k < 2; k++) {
+        const double low = entry->low + k * half;
+        push(path, (struct path_entry){path->phase == LEAST ? bound : low, low, entry->bounds,
+                                       entry->level + 1});
+    }
+}
+
+static void answer(const struct fmb_robot_path *path, enum fmb_robot_verdict verdict, double low,
+                   double high, const unsigned pair[2], struct fmb_robot_edge *out)
+{
+    const bool proven = verdict == FMB_ROBOT_FREE || verdict == FMB_ROBOT_NEAR;
+    *out = (struct fmb_robot_edge){.verdict = verdict,
+                                   .at = {low, high},
+                                   .clearance = proven ? path->proven : 0,
+                                   .closest = path->closest,
+                                   .has_pair = path->closest < INFINITY};
+    if (out->has_pair) {
+        out->a = path->parts[pair[0]].placement;
+        out->b = path->parts[pair[1]].placement;
+    }
+}
+
+/* Takes one entry. Returns whether the edge is answered. */
+static bool take(struct fmb_robot_path *path, struct fmb_robot_edge *out)
+{
+    struct fmb_gap gap;
+    double bound;
+    const bool first = path->phase == FIRST, hit = path->hit <= 1;
+    if (!first && hit) {
+        begin_first(path);
+        return false;
+    }
+    if (path->heap_count == 0 && !hit) {
+        const bool near = path->proven < path->wanted;
+        answer(path, near ? FMB_ROBOT_NEAR : FMB_ROBOT_FREE, near ? path->closest_at : 0,
+               near ? path->closest_at : 1, path->closest_pair, out);
+        return true;
+    }
+    const struct path_entry entry =
+        path->heap_count > 0 ? pop(path) : (struct path_entry){.low = path->hit};
+    if (path->hit <= entry.low + ldexp(1, -CONTACT_LEVEL)) {
+        answer(path, FMB_ROBOT_CONTACT, fmin(entry.low, path->hit), path->hit, path->hit_pair, out);
+        return true;
+    }
+    if (prove_entry(path, &entry, &gap, &bound))
+        return false;
+    const bool open =
+        entry.level >= PATH_LEVEL_MAX || ++path->work > (first ? FIRST_ENTRIES : LEAST_ENTRIES);
+    if (!open) {
+        halve(path, &entry, bound);
+    } else if (!first) {
+        begin_first(path);
+    } else {
+        const struct path_bounds *of = &path->live[entry.bounds];
+        answer(path, FMB_ROBOT_UNDECIDED, entry.low, entry.low + ldexp(1, -entry.level),
+               (const unsigned[2]){of->a, of->b}, out);
+        return true;
+    }
+    return false;
+}
+
+/* ---- Functions of the header ---- */
+
+int fmb_robot_path_begin(struct fmb_robot_scene *scene, double clearance,
+                         struct fmb_robot_path **out)
+{
+    struct fmb_robot_path *path = *out = allocate(1, sizeof *path);
+    const struct fmb_scene *bodies = &scene->owner.scene;
+    path->scene = scene;
+    path->phase = DONE;
+    path->wanted = clearance;
+    if (!(clearance >= 0 && clearance < INFINITY))
+        robot_say(&path->errors, "clearance: expected a finite number, 0 or more");
+    else if (scene->robot->joint_count == 0)
+        robot_say(&path->errors, "%s: the robot has no joint that moves", scene->robot->tree.path);
+    for (size_t i = 0; i < bodies->placement_count && !path->errors.out; i++) {
+        const double *v = scene->begin[i].velocity;
+        if (v[0] != 0 || v[1] != 0 || v[2] != 0 || scene->begin[i].end_count != 0)
+            robot_say(&path->errors,
+                      "body %lld%s%s moves: on a path only the robot does, and what it carries",
+                      (long long) bodies->placements[i].id, scene->begin[i].name ? ", " : "",
+                      scene->begin[i].name ? scene->begin[i].name : "");
+    }
+    return !path->errors.out && path_model_make(path) ? 0 : -1;
+}
+
+void fmb_robot_path_free(struct fmb_robot_path *path)
+{
+    if (!path)
+        return;
+    robot_lines_clear(&path->errors);
+    scene_clear(&path->owner);
+    free(path->families);
+    free(path->partner);
+    free(path->touches);
+    free(path->live);
+    free(path->heap);
+    free(path->leaves);
+    free(path);
+}
+
+const char *fmb_robot_path_why(struct fmb_robot_path *path)
+{
+    return robot_lines_text(&path->errors);
+}
+
+size_t fmb_robot_path_pairs(const struct fmb_robot_path *path)
+{
+    return path->pair_count;
+}
+
+size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
+                              const struct fmb_robot_touch **touches)
+{
+    *touches = path->touches;
+    return path->touch_count;
+}
+
+int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to)
+{
+    static const double half_turn = 3.1415926535897932;
+    const struct robot *tree = &path->scene->robot->tree;
+    char text[2][NUMBER_TEXT_MAX];
+    robot_lines_clear(&path->errors);
+    path->phase = DONE;
+    for (size_t j = 0; j < tree->joint_count; j++) {
+        const struct robot_joint *joint = &tree->joints[j];
+        path->value[0][j] = joint->type == ROBOT_FIXED ? 0 : from[j];
+        path->value[1][j] = joint->type == ROBOT_FIXED ? 0 : to[j];
+        for (int end = 0; end < 2; end++) {
+            const char *why = robot_refuse_value(joint, path->value[end][j]);
+            if (why)
+                robot_say(&path->errors, "joint '%s': its value %s", joint->name->name, why);
+        }
+        if (joint->type == ROBOT_CONTINUOUS &&
+            fabs(path->value[1][j] - path->value[0][j]) > half_turn)
+            robot_say(&path->errors,
+                      "joint '%s' turns from %s to %s, by more than pi: the straight line goes the "
+                      "long way round; unwrap the column, by adding multiples of 2 pi",
+                      joint->name->name, number_short(path->value[0][j], text[0]),
+                      number_short(path->value[1][j], text[1]));
+    }
+    if (!path->errors.out && !path_edge_begin(path))
+        robot_say(&path->errors, "the robot or the world is too large");
+    if (path->errors.out)
+        return -1;
+    path->closest = path->hit = INFINITY;
+    path->phase = LEAST;
+    enter_pairs(path);
+    return 0;
+}
+
+int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const double *to)
+{
+    const struct fmb_robot *robot = path->scene->robot;
+    double *value[2];
+    for (int end = 0; end < 2; end++) {
+        value[end] = allocate(robot->tree.joint_count, sizeof **value);
+        for (size_t i = 0; i < robot->joint_count; i++)
+            value[end][robot->moving[i]] = (end ? to : from)[i];
+        robot_follow(&robot->tree, NULL, value[end]);
+    }
+    const int status = path_edge_of(path, value[0], value[1]);
+    free(value[0]);
+    free(value[1]);
+    return status;
+}
+
+int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out)
+{
+    for (int i = 0; i < STEP_ENTRIES && path->phase != DONE; i++)
+        if (take(path, out)) {
+            path->phase = DONE;
+            return 1;
+        }
+    return 0;
+}
