@@ -97,6 +97,7 @@ wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_take pread64)
 wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
+wraps_test_path := $(call wraps,path_bounds_of)
 
 # Kernels are optimised in all modes.
 compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees)

@@ -27,7 +27,7 @@ enum {
     LEAST_ENTRIES =
         1 << 17, /* of phase LEAST, and of phase FIRST of an edge: the bound of its work */
     FIRST_ENTRIES = 1 << 19,
-    CONTACT_LEVEL = 16 /* a first contact is enclosed to 2^-16 of the edge */
+    CONTACT_LEVEL = 17 /* a first contact is enclosed to twice 2^-17 of the edge */
 };
 
 /* ---- Entries ---- */
@@ -283,7 +283,7 @@ static bool prove_entry(struct fmb_robot_path *path, const struct path_entry *en
         *gap = (struct fmb_gap){.bounds = {-INFINITY, INFINITY}};
     const struct path_pose *poses = path_poses(path, middle);
     proven = gap->bounds[0] - bounds->speed * w / 2;
-    *bound = proven;
+    const double proven_middle = *bound = proven;
     direction.kind = PATH_MIDDLE;
     path_turn_back(poses[path->parts[bounds->a].node].r, gap->direction, direction.n[0]);
     if (proven > 0 && proven >= target(path)) {
@@ -295,8 +295,8 @@ static bool prove_entry(struct fmb_robot_path *path, const struct path_entry *en
     const int count = list_directions(path, bounds, poses, gap->direction, carried);
     for (int i = 0; i < count; i++) {
         const int k = carried[i].kind == PATH_A ? 0 : carried[i].kind == PATH_B ? 1 : 2;
-        if (gap->bounds[0] - bounds->curve[k] * w * w / 8 < target(path))
-            continue;
+        if (proven_middle + bounds->speed * w - bounds->curve[k] * w * w / 8 < target(path))
+            continue; /* more than the gap at the ends would be needed */
         proven = path_prove(path, bounds, &carried[i], entry->low, entry->level);
         *bound = fmax(*bound, proven);
         if (proven > 0 && proven >= target(path)) {
@@ -356,12 +356,16 @@ static bool take(struct fmb_robot_path *path, struct fmb_robot_edge *out)
     }
     const struct path_entry entry =
         path->heap_count > 0 ? pop(path) : (struct path_entry){.low = path->hit};
-    if (path->hit <= entry.low + ldexp(1, -CONTACT_LEVEL)) {
+    if (path->hit <= entry.low + ldexp(2, -CONTACT_LEVEL)) {
         answer(path, FMB_ROBOT_CONTACT, fmin(entry.low, path->hit), path->hit, path->hit_pair, out);
         return true;
     }
     if (prove_entry(path, &entry, &gap, &bound))
         return false;
+    if (first &&
+        entry.level == CONTACT_LEVEL) /* a contact at its end may be no deeper than errors */
+        measure(path, &path->live[entry.bounds], fmin(1, entry.low + ldexp(2, -CONTACT_LEVEL)),
+                &gap);
     const bool open =
         entry.level >= PATH_LEVEL_MAX || ++path->work > (first ? FIRST_ENTRIES : LEAST_ENTRIES);
     if (!open) {
