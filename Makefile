@@ -428,7 +428,7 @@ install: all
 		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h service/fmb/fmb_batch.h clients/lib/fmb_client.h \
-		clients/robot/fmb_robot.h clients/robot/fmb_robot_flat.h clients/python/fmb_flat.h "$(root)/include"
+		clients/robot/fmb_robot.h clients/python/fmb_flat.h "$(root)/include"
 	$(INSTALL) -m 644 clients/python/fmb.py "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) -m 644 $(message_files) "$(root)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(root)/share/doc/fmb"
@@ -448,7 +448,7 @@ install-strip: install
 
 uninstall:
 	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_batch.h \
-		include/fmb_client.h include/fmb_robot.h include/fmb_robot_flat.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
+		include/fmb_client.h include/fmb_robot.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
 		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
 		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd
 	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb.so libfmb.so.0 \

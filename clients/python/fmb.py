@@ -40,6 +40,7 @@ import itertools
 import math
 import operator
 import os
+import struct
 import threading
 import weakref
 from array import array
@@ -57,58 +58,48 @@ __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPP
            "Robot", "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "cylinder", "face",
            "hull", "sphere", "status_text", "tetrahedron", "version"]
 
-# ---- The library: fmb_flat.h ----
+# ---- The libraries: fmb_flat.h, fmb_robot.h, and structs of fmb.h ----
 
 _ABI = 2
 _SONAME = "libfmb-client.so.0"
-_ROBOT_ABI = 1
 _ROBOT_SONAME = "libfmb-robot.so.0"
 _WHY_MAX = 512
+_INT, _UNSIGNED, _SIZE, _LONG, _REAL, _TEXT, _POINTER = (
+    ctypes.c_int, ctypes.c_uint, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p, ctypes.c_void_p)
 
 
-def _open(soname: str, abi: str, expected: int) -> ctypes.CDLL:
+def _struct(name: str, *fields: tuple[str, Any]) -> Any:
+    return type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+_BodyBegin = _struct("fmb_body", ("reach", _REAL), ("box", _REAL * 6), ("dim", _INT))
+_Placement = _struct(
+    "fmb_placement", ("body", ctypes.POINTER(_BodyBegin)), ("position", _REAL * 3), ("velocity", _REAL * 3),
+    ("orientation", _REAL * 4), ("orientation_count", _INT), ("end_position", _REAL * 3),
+    ("end_orientation", _REAL * 4), ("end_count", _INT), ("group", _LONG), ("id", _LONG), ("name", _TEXT))
+_Placed = _struct(
+    "fmb_scene", ("placements", ctypes.POINTER(_Placement)), ("placement_count", _SIZE), ("duration", _REAL),
+    ("instant", ctypes.c_bool), ("method", _POINTER), ("want", _UNSIGNED), ("margin", _REAL), ("which", _INT),
+    ("split", _SIZE), ("pairs", _POINTER), ("pair_count", _SIZE), ("ignored", ctypes.POINTER(_UNSIGNED)),
+    ("ignored_count", _SIZE), ("first_pair", ctypes.c_ulonglong), ("label", _TEXT))
+_World = _struct("fmb_robot_world", ("scene", ctypes.POINTER(_Placed)), ("links", ctypes.POINTER(_TEXT)), ("name", _TEXT))
+_Options = _struct("fmb_robot_options", ("srdf", _TEXT), ("package_path", _TEXT), ("base", _REAL * 6), ("sides", _INT),
+                   ("excess", _REAL), ("objects", _INT), ("bus", _INT))
+
+
+def _load(soname: str, abi: str, *functions: Any) -> ctypes.CDLL:
+    """Loads a library and declares functions: name, result and arguments. abi: of its interface number, or ""."""
     try:
-        library = ctypes.CDLL(soname)
+        library, locked = ctypes.CDLL(soname), ctypes.PyDLL(soname)
     except OSError as error:
         raise ImportError(f"fmb: {error}: install it, or add its folder to LD_LIBRARY_PATH") from None
-    found = getattr(library, abi, int)()
-    if found != expected:
-        raise ImportError(f"fmb: {soname} has interface {found}, fmb.py needs {expected}: install both "
-                          "from one version")
-    return library
-
-
-def _load() -> ctypes.CDLL:
-    library = _open(_SONAME, "fmb_flat_abi", _ABI)
-    integer, size, long, real, text, pointer = (
-        ctypes.c_int, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p,
-        ctypes.c_void_p)
-    # Calls of held keep the interpreter locked, so that no other thread forks while some poses are set.
-    held = ctypes.PyDLL(_SONAME)
-    for name, result, arguments in (
-            ("fmb_version", text, ()),
-            ("fmb_client_status_text", text, (integer,)),
-            ("fmb_client_close", None, (pointer,)),
-            ("fmb_flat_open", pointer, (text, text, real, integer, real, text, size)),
-            ("fmb_flat_body_make", integer, (integer, size) + 4 * (pointer,)),
-            ("fmb_flat_body_free", None, (pointer,)),
-            ("fmb_flat_cylinder", real, (real, real, integer, pointer)),
-            ("fmb_flat_scene_make", integer, (size,) + 5 * (pointer,)),
-            ("fmb_flat_scene_free", None, (pointer,)),
-            ("fmb_flat_scene_forked", None, (pointer,)),
-            ("fmb_flat_scene_ignore", integer, (pointer, pointer, size)),
-            ("fmb_flat_placements", pointer, (pointer,)),
-            ("fmb_flat_take", None, (pointer, pointer, size)),
-            ("fmb_flat_why", text, (pointer,)),
-            ("fmb_flat_place", integer, (pointer, size, size, pointer, pointer, pointer)),
-            ("fmb_flat_pair", integer, (pointer, pointer, long, long, real, integer)),
-            ("fmb_flat_decide", integer, (pointer, pointer, real, integer, integer, real, long,
-                                          pointer, size, pointer, size, text)),
-            ("fmb_flat_decide_all", long, (pointer, real, integer, integer, real)),
-            ("fmb_flat_count", size, (pointer,)),
-            ("fmb_flat_pack", None, (pointer, integer, integer, pointer)),
-            ("fmb_flat_answers", None, 12 * (pointer,))):
-        function = getattr(held if name in ("fmb_flat_place", "fmb_flat_take") else library, name)
+    found = getattr(library, abi, int)() if abi else _ABI
+    if found != _ABI:
+        raise ImportError(f"fmb: {soname} has interface {found}, fmb.py needs {_ABI}: install both from one version")
+    for name, result, *arguments in functions:
+        # These keep the interpreter locked, so that no other thread forks while some poses are set.
+        held = name in ("fmb_flat_place", "fmb_flat_take", "fmb_robot_place")
+        function = getattr(locked if held else library, name)
         function.restype, function.argtypes = result, arguments
         setattr(library, name, function)
     return library
@@ -116,36 +107,53 @@ def _load() -> ctypes.CDLL:
 
 @functools.lru_cache(maxsize=None)
 def _robots() -> ctypes.CDLL:
-    """The library for robots: fmb_robot_flat.h. It is loaded when it is needed."""
-    library = _open(_ROBOT_SONAME, "fmb_robot_flat_abi", _ROBOT_ABI)
-    integer, size, real, text, pointer = (
-        ctypes.c_int, ctypes.c_size_t, ctypes.c_double, ctypes.c_char_p, ctypes.c_void_p)
-    held = ctypes.PyDLL(_ROBOT_SONAME)
-    for name, result, arguments in (
-            ("fmb_robot_flat_read", integer, 3 * (text,) + (pointer, integer, real, integer, pointer)),
-            ("fmb_robot_free", None, (pointer,)),
-            ("fmb_robot_why", text, (pointer,)),
-            ("fmb_robot_joints", size, (pointer, pointer)),
-            ("fmb_robot_links", size, (pointer, pointer)),
-            ("fmb_robot_limits", None, 3 * (pointer,)),
-            ("fmb_robot_home", None, 2 * (pointer,)),
-            ("fmb_robot_excess", real, (pointer,)),
-            ("fmb_robot_flat_json", integer, (text, pointer)),
-            ("fmb_robot_flat_make", integer, (pointer, pointer, pointer, size, real, pointer, size,
-                                              pointer, size, pointer)),
-            ("fmb_robot_flat_free", None, (pointer,)),
-            ("fmb_robot_flat_why", text, (pointer,)),
-            ("fmb_robot_flat_counts", None, 3 * (pointer,)),
-            ("fmb_robot_flat_copy", None, 11 * (pointer,)),
-            ("fmb_robot_flat_placements", pointer, (pointer,)),
-            ("fmb_robot_flat_place", integer, 4 * (pointer,))):
-        function = getattr(held if name == "fmb_robot_flat_place" else library, name)
-        function.restype, function.argtypes = result, arguments
-        setattr(library, name, function)
-    return library
+    """The library for robots. It is loaded when it is needed."""
+    return _load(
+        _ROBOT_SONAME, "",
+        ("fmb_robot_read", _INT, _TEXT, _POINTER, _POINTER),
+        ("fmb_robot_free", None, _POINTER),
+        ("fmb_robot_why", _TEXT, _POINTER),
+        ("fmb_robot_joints", _SIZE, _POINTER, _POINTER),
+        ("fmb_robot_links", _SIZE, _POINTER, _POINTER),
+        ("fmb_robot_limits", None, _POINTER, _POINTER, _POINTER),
+        ("fmb_robot_home", None, _POINTER, _POINTER),
+        ("fmb_robot_excess", _REAL, _POINTER),
+        ("fmb_robot_json_read", _INT, _TEXT, _POINTER),
+        ("fmb_robot_json_free", None, _POINTER),
+        ("fmb_robot_json_why", _TEXT, _POINTER),
+        ("fmb_robot_json_get", ctypes.POINTER(_World), _POINTER),
+        ("fmb_robot_scene", _INT, _POINTER, _POINTER, _SIZE, _POINTER, _SIZE, _POINTER),
+        ("fmb_robot_scene_free", None, _POINTER),
+        ("fmb_robot_scene_why", _TEXT, _POINTER),
+        ("fmb_robot_scene_get", ctypes.POINTER(_Placed), _POINTER),
+        ("fmb_robot_moved", _SIZE, _POINTER),
+        ("fmb_robot_place", _INT, _POINTER, _POINTER))
 
 
-_lib = _load()
+_lib = _load(
+    _SONAME, "fmb_flat_abi",
+    ("fmb_version", _TEXT),
+    ("fmb_client_status_text", _TEXT, _INT),
+    ("fmb_client_close", None, _POINTER),
+    ("fmb_flat_open", _POINTER, _TEXT, _TEXT, _REAL, _INT, _REAL, _TEXT, _SIZE),
+    ("fmb_flat_body_make", _INT, _INT, _INT, _POINTER, _SIZE, _POINTER),
+    ("fmb_flat_body_join", _INT, _POINTER, _SIZE, _POINTER),
+    ("fmb_flat_body_free", None, _POINTER),
+    ("fmb_flat_cylinder", _REAL, _REAL, _REAL, _INT, _POINTER),
+    ("fmb_flat_scene_make", _INT, _SIZE, *5 * (_POINTER,)),
+    ("fmb_flat_scene_free", None, _POINTER),
+    ("fmb_flat_scene_forked", None, _POINTER),
+    ("fmb_flat_scene_ignore", _INT, _POINTER, _POINTER, _SIZE),
+    ("fmb_flat_placements", ctypes.POINTER(_Placement), _POINTER),
+    ("fmb_flat_take", None, _POINTER, _POINTER, _SIZE),
+    ("fmb_flat_why", _TEXT, _POINTER),
+    ("fmb_flat_place", _INT, _POINTER, _SIZE, _SIZE, _POINTER, _POINTER, _POINTER),
+    ("fmb_flat_pair", _INT, _POINTER, _POINTER, _LONG, _LONG, _REAL, _INT),
+    ("fmb_flat_decide", _INT, _POINTER, _POINTER, _REAL, _INT, _INT, _REAL, _LONG, _POINTER, _SIZE, _POINTER, _SIZE,
+     _TEXT),
+    ("fmb_flat_decide_all", _LONG, _POINTER, _REAL, _INT, _INT, _REAL),
+    ("fmb_flat_count", _SIZE, _POINTER),
+    ("fmb_flat_pack", None, _POINTER, _POINTER))
 _WANT_BOX, _WANT_TIMES, _WANT_GAP, _WANT_POINT = 1, 4, 8, 16
 _NO_SERVICE, _NO_MEMORY = -2, -4
 _HULL_VERTICES_MAX = 1024
@@ -326,6 +334,10 @@ def _pointer(buffer: Any) -> Any:
 # ---- Bodies ----
 
 
+def _free_nothing(_: int) -> None:
+    """Of a handle that belongs to another object."""
+
+
 class Body(_Handle):
     """A rigid body of one or more frames, in body coordinates. It may be placed any number of times, in
     any scene. Made by box(), cuboid(), tetrahedron(), face(), hull(), sphere(), capsule(),
@@ -336,20 +348,19 @@ class Body(_Handle):
 
     _free = _lib.fmb_flat_body_free
 
-    def __init__(self, name: str, dim: int, frames: Sequence[tuple[int, array]]) -> None:
-        self.dim = dim
-        self._frames = frames
-        shapes = array("i", [code for code, _ in frames])
-        counts = array("q", [len(numbers) for _, numbers in frames])
-        numbers = array("d")
-        for _, more in frames:
-            numbers.extend(more)
-        handle = ctypes.c_void_p()
-        status = _lib.fmb_flat_body_make(dim, len(frames), _pointer(shapes), _pointer(counts),
-                                         _pointer(numbers), ctypes.byref(handle))
-        if status:
-            raise _error(status, f"{name}: {status_text(status)}")
-        self._handle = handle.value
+    def __init__(self, dim: int, handle: int, keeps: Any = None, owned: bool = True) -> None:
+        self.dim, self._keeps = dim, keeps  # keeps: what the body points to
+        if not owned:
+            self._free = _free_nothing
+        self._handle = handle
+
+
+def _make_body(name: str, dim: int, make: Any, *arguments: Any, keeps: Any = None) -> Body:
+    handle = ctypes.c_void_p()
+    status = make(*arguments, ctypes.byref(handle))
+    if status:
+        raise _error(status, f"{name}: {status_text(status)}")
+    return Body(dim, handle.value, keeps)
 
 
 # Values of placement_t.shapes.
@@ -381,7 +392,7 @@ def _from_0(name: str, value: Any) -> float:
 def _body(code: int, name: str, numbers: array, dim: int, radius: Any) -> Body:
     if _from_0("radius", radius):
         code, numbers = code + _RADIUS, array("d", [radius]) + numbers
-    return Body(name, dim, [(code, numbers)])
+    return _make_body(name, dim, _lib.fmb_flat_body_make, dim, code, _pointer(numbers), len(numbers))
 
 
 def _frame(code: int, name: str, value: Any, shape: tuple, origin_name: str, origin: Any,
@@ -435,7 +446,7 @@ def cylinder(radius: float, length: float, *, sides: int = 16) -> Body:
         raise ValueError(f"sides: expected a multiple of 4 up to {_HULL_VERTICES_MAX // 2}, found {sides}")
     vertices = array("d", bytes(48 * sides))
     _lib.fmb_flat_cylinder(_from_0("radius", radius), _from_0("length", length), sides, _pointer(vertices))
-    return Body("radius", 3, [(_HULL, vertices)])
+    return _body(_HULL, "radius", vertices, 3, 0)
 
 
 def _dim(dim: Any) -> int:
@@ -505,7 +516,11 @@ def hull(vertices: Array, *, radius: float = 0) -> Body:
 def compound(bodies: Iterable[Body]) -> Body:
     """One rigid body with the frames of others, which are not tested against each other."""
     parts = _bodies(bodies)
-    return Body("bodies", parts[0].dim, [frame for part in parts for frame in part._frames])
+    return _make_body("bodies", parts[0].dim, _lib.fmb_flat_body_join, _handles(parts), len(parts), keeps=parts)
+
+
+def _handles(bodies: Sequence[Body]) -> Any:
+    return (ctypes.c_void_p * len(bodies))(*[body._handle for body in bodies])
 
 
 def _maker(make: Any) -> Any:
@@ -589,23 +604,6 @@ class Answer(NamedTuple):
     frames: Optional[tuple[int, int]]  #: indices of the frames of a and b that have this gap
 
 
-def _answer(names: Any, a: int, b: int, status: int, verdict: int, contact: Any, box: Any, point: Any,
-            gap: Any, direction: Any, time: Any, witness: Any, frames: Any) -> Answer:
-    """Makes an Answer of lists of numbers. A list is None, or begins with NaN, if it has no value."""
-
-    def known(values: Any) -> Any:
-        return None if values is None or values[0] != values[0] else tuple(values)
-
-    def halves(values: Any) -> Any:
-        values = known(values)
-        return values and (values[:len(values) // 2], values[len(values) // 2:])
-
-    gap, point = known(gap), known(point)
-    return Answer(a, b, (names[a], names[b]), status, _VERDICTS[verdict], known(contact), halves(box),
-                  point and (point[0], point[1:]), gap, *(tuple(direction), known(time) and time[0], halves(witness), tuple(frames))
-                  if gap else (None,) * 4)
-
-
 class Rows(Sequence):
     """An array of several axes, if numpy is not installed. Its rows are memoryviews or Rows."""
 
@@ -640,7 +638,7 @@ def _columns(dim: int, pairs: bool, wanted: int) -> tuple[dict[str, Any], int]:
             ("points", point, "d", (1 + dim,)), ("gaps", gap, "d", (2,)), ("directions", gap, "d", (dim,)),
             ("times", gap, "d", ()), ("witnesses", gap, "d", (2, dim)), ("frames", gap, "q", (2,)),
             ("statuses", True, "i", ()), ("verdicts", True, "B", ())):
-        columns[name] = (width, code, shape) if found else None
+        columns[name] = (width, code, shape, struct.Struct(f"{math.prod(shape)}{code}")) if found else None
         width += math.prod(shape) * array(code).itemsize if found else 0
     return columns, width
 
@@ -669,7 +667,7 @@ class Answers(Sequence):
         self._columns, width = _columns(dim, pairs is None, wanted)
         self._data = (ctypes.c_char * ((count or 1) * width))()  # of all columns; each becomes an array when it is used
         if count:
-            _lib.fmb_flat_pack(handle, pairs is not None, wanted, self._data)
+            _lib.fmb_flat_pack(handle, self._data)
 
     def __getattr__(self, name: str) -> Any:
         if name[0] == "_" or name not in self._columns:
@@ -678,11 +676,11 @@ class Answers(Sequence):
         if name == "pairs" and self._pairs is not None:
             view = self._pairs if numpy is None else numpy.asarray(self._pairs)
         elif column and numpy is not None:
-            offset, code, shape = column
+            offset, code, shape, _ = column
             view = numpy.frombuffer(self._data, code, n * math.prod(shape), n * offset).reshape((n,) + shape)
         elif column:
-            offset, code, shape = column
-            size = (n or 1) * math.prod(shape) * array(code).itemsize
+            offset, code, shape, row = column
+            size = (n or 1) * row.size
             view = memoryview(self._data).cast("B")[n * offset:n * offset + size].cast(code, (n or 1,) + shape)[:n]
         view = self.__dict__[name] = _rows(view)
         return view
@@ -693,15 +691,23 @@ class Answers(Sequence):
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[k] for k in range(*index.indices(self._count))]
-        k = range(self._count)[index]
+        n, k = self._count, range(self._count)[index]
 
-        def row(column: Any, code: str = "d") -> Any:
-            return None if column is None else array(code, column[k:k + 1].tobytes()).tolist()
+        def known(name: str) -> Any:
+            """A row; None if it was not wanted, or begins with NaN: it has no value."""
+            column = self._columns[name]
+            row = column and column[3].unpack_from(self._data, n * column[0] + k * column[3].size)
+            return row if row and row[0] == row[0] else None
 
-        a, b = row(self.pairs, "q")
-        return _answer(self._names, a, b, int(self.statuses[k]), int(self.verdicts[k]),
-                       row(self.contacts), row(self.boxes), row(self.points), row(self.gaps),
-                       row(self.directions), row(self.times), row(self.witnesses), row(self.frames, "q"))
+        def halves(row: Any) -> Any:
+            return row and (row[:len(row) // 2], row[len(row) // 2:])
+
+        a, b = known("pairs") or (self._pairs[k, 0], self._pairs[k, 1])
+        gap, point, time = known("gaps"), known("points"), known("times")
+        return Answer(a, b, (self._names[a], self._names[b]), known("statuses")[0], _VERDICTS[known("verdicts")[0]],
+                      known("contacts"), halves(known("boxes")), point and (point[0], point[1:]), gap,
+                      *(known("directions"), time and time[0], halves(known("witnesses")), known("frames"))
+                      if gap else (None,) * 4)
 
 
 # ---- The bus ----
@@ -806,20 +812,15 @@ class Scene(_Handle):
         self._lock = threading.Lock()
         _shared.add(self)
         self.bodies = _bodies(bodies)
-        self.dim = dim = self.bodies[0].dim
+        self.dim = self.bodies[0].dim
         n = len(self.bodies)
-        real = ctypes.c_double
-        # The columns of fmb_flat_answers() for one answer, verdicts first.
-        self._one = (ctypes.c_uint8 * 1, ctypes.c_int32 * 1, real * 2, real * (2 * dim),
-                     real * (1 + dim), real * 2, real * dim, real * 1, real * (2 * dim), ctypes.c_int64 * 2)
-        self._one = tuple(column() for column in self._one)
         self.names = (None,) * n if names is None else tuple(_iterate("names", names))
         if len(self.names) != n:
             raise ValueError(f"names: expected {n}, found {len(self.names)}")
         texts = [_text(f"names[{i}]", name) for i, name in enumerate(self.names)]
         handle = ctypes.c_void_p()
         status = _lib.fmb_flat_scene_make(
-            n, (ctypes.c_void_p * n)(*[body._handle for body in self.bodies]),
+            n, _handles(self.bodies),
             _pointer(_flat("ids", range(1, n + 1) if ids is None else ids, "q", (n,))[0]),
             _pointer(_flat("groups", [0] * n if groups is None else groups, "q", (n,))[0]),
             (ctypes.c_char_p * n)(*texts), ctypes.byref(handle))
@@ -841,8 +842,13 @@ class Scene(_Handle):
 
         Raises ValueError for a file that is refused.
         """
-        flat = _FlatScene("fmb_robot_flat_json", _path("path", path))
-        return flat.scene(flat.bodies(), duration=flat._settings[0], margin=flat._settings[1])
+        made = _Made("fmb_robot_json", "_read", _path("path", path))
+        world = made._lib.fmb_robot_json_get(made._handle).contents
+        of = world.scene.contents
+        if of.which:
+            raise Error(f"{path}: pairs: they are an argument of decide()")
+        links = [link and link.decode() for link in world.links[:of.placement_count]] if world.links else ()
+        return _scene_of(of, made, [], duration=of.duration, **{"links": tuple(links)} if links else {})
 
     def _in_child(self, was_used: bool) -> None:
         if was_used:
@@ -895,16 +901,10 @@ class Scene(_Handle):
         client: decides the pair; None: in process
         """
         a, b, duration = _int("a", a), _int("b", b), _float("duration", duration)
+        want = (_WANT_BOX if box else 0) + (_WANT_POINT if point else 0) + (_WANT_GAP if gap else 0)
         with self._lock, _lock_of(client):
-            self._check(_lib.fmb_flat_pair(
-                self._handle, _handle_of(client), a, b, duration,
-                (_WANT_BOX if box else 0) + (_WANT_POINT if point else 0) + (_WANT_GAP if gap else 0)),
-                "pair: ", client)
-            one = self._one
-            _lib.fmb_flat_answers(self._handle, None, *one)
-            return _answer(self.names, a, b, 0, one[0][0], one[2][:], one[3][:] if box else None,
-                           one[4][:] if point else None,
-                           *[column[:] for column in one[5:]] if gap else (None,) * 5)
+            self._check(_lib.fmb_flat_pair(self._handle, _handle_of(client), a, b, duration, want), "pair: ", client)
+            return Answers(self._handle, 1, self.dim, self.names, {(0, 0): a, (0, 1): b}, want | _WANT_TIMES)[0]
 
     def decide(self, duration: float, *, pairs: Optional[Array] = None,
                split: Optional[int] = None, ignored: Optional[Array] = None, margin: float = 0,
@@ -986,49 +986,34 @@ def _path(name: str, value: Any) -> Optional[bytes]:
         raise TypeError(f"{name}: expected a path, found {value!r:.40}") from None
 
 
-class _FlatScene(_Handle):
-    """A scene of libfmb-robot, made by a function of these arguments."""
+class _Made(_Handle):
+    """An object of libfmb-robot: kind + make is the function that makes it, of these arguments."""
 
-    def __init__(self, make: str, *arguments: Any) -> None:
+    def __init__(self, kind: str, make: str, *arguments: Any, keeps: Any = None) -> None:
         self._lib = lib = _robots()
-        self._free = lib.fmb_robot_flat_free
+        self._free, self._why, self._keeps = getattr(lib, kind + "_free"), getattr(lib, kind + "_why"), keeps
         handle = ctypes.c_void_p()
-        status = getattr(lib, make)(*arguments, ctypes.byref(handle))
+        status = getattr(lib, kind + make)(*arguments, ctypes.byref(handle))
         self._handle = handle.value
         if status:
-            raise Error(lib.fmb_robot_flat_why(handle).decode(errors="replace"))
-        counts, self._settings = (ctypes.c_int64 * 5)(), (ctypes.c_double * 2)()
-        lib.fmb_robot_flat_counts(handle, counts, self._settings)
-        self._dim, self._count, self._frames, self._numbers, self._ignored = counts
+            raise Error(self.why())
 
-    def bodies(self) -> list[Body]:
-        frames, shapes, counts = (ctypes.c_int64 * self._count)(), (ctypes.c_int32 * self._frames)(), (
-            ctypes.c_int64 * self._frames)()
-        numbers = array("d", bytes(8 * self._numbers))
-        self._lib.fmb_robot_flat_copy(self._handle, frames, shapes, counts, _pointer(numbers), *6 * (None,))
-        ends = list(itertools.accumulate(counts, initial=0))
-        each = [(shapes[k], numbers[ends[k]:ends[k + 1]]) for k in range(self._frames)]
-        last = list(itertools.accumulate(frames, initial=0))
-        return [Body("body", self._dim, each[last[i]:last[i + 1]]) for i in range(self._count)]
+    def why(self) -> str:
+        return self._why(self._handle).decode(errors="replace")
 
-    def scene(self, bodies: Sequence[Body], **more: Any) -> Scene:
-        """A Scene of these bodies. more: attributes."""
-        n = self._count
-        ids, groups, ignored = (array("q", bytes(8 * k)) for k in (n, n, 2 * self._ignored))
-        names, links = (ctypes.c_char_p * n)(), (ctypes.c_char_p * n)()
-        velocities = array("d", bytes(8 * n * self._dim))
-        self._lib.fmb_robot_flat_copy(self._handle, *4 * (None,), _pointer(ids), _pointer(groups), names, links,
-                                      _pointer(velocities), _pointer(ignored))
 
-        def texts(column: Any) -> tuple[Optional[str], ...]:
-            return tuple(text if text is None else text.decode() for text in column)
-
-        scene = Scene(bodies, ids=ids, groups=groups, names=texts(names),
-                      velocities=memoryview(velocities).cast("B").cast("d", (n, self._dim)),
-                      ignored=memoryview(ignored).cast("B").cast("q", (self._ignored, 2)) if ignored else None)
-        scene.__dict__.update(links=texts(links), **more)
-        _lib.fmb_flat_take(scene._handle, self._lib.fmb_robot_flat_placements(self._handle), n)
-        return scene
+def _scene_of(of: Any, owner: _Made, bodies: list[Body], **more: Any) -> Scene:
+    """A Scene of a struct fmb_scene. bodies: of the last placements; the owner has the others. more: attributes."""
+    placed = of.placements[:of.placement_count]
+    owned = [p.body.contents for p in placed[:len(placed) - len(bodies)]]
+    scene = Scene([Body(body.dim, ctypes.addressof(body), owner, False) for body in owned] + bodies,
+                  ids=[p.id for p in placed], groups=[p.group for p in placed],
+                  names=[p.name and p.name.decode() for p in placed],
+                  velocities=[p.velocity[:p.body.contents.dim] for p in placed],
+                  ignored=[of.ignored[2 * i:2 * i + 2] for i in range(of.ignored_count)])
+    scene.__dict__.update(margin=of.margin, **more)
+    _lib.fmb_flat_take(scene._handle, of.placements, len(placed))
+    return scene
 
 
 class Robot(_Handle):
@@ -1056,53 +1041,35 @@ class Robot(_Handle):
                  package_path: Optional[str] = None, ignore: Iterable[Sequence[str]] = (),
                  base: Optional[Array] = None, *, sides: int = 16, excess: float = 0,
                  objects: bool = False) -> None:
-        self._lib = lib = _robots()
-        self._free = lib.fmb_robot_free
         place, (found,) = _flat("base", [0] * 6 if base is None else base, "d", ("6",))
         if found not in (3, 6):
             raise ValueError(f"base: expected x, y, z, or x, y, z, roll, pitch, yaw, found {found} numbers")
-        place = array("d", place.tolist() + [0] * (6 - found))
         self._ignore = [tuple(_iterate(f"ignore[{i}]", pair)) for i, pair in enumerate(_iterate("ignore", ignore))]
         for i, pair in enumerate(self._ignore):
             if len(pair) != 2 or not all(isinstance(name, str) for name in pair):
                 raise ValueError(f"ignore[{i}]: expected two names, found {pair!r:.40}")
-        handle = ctypes.c_void_p()
         if path is None:
             raise TypeError("path: expected a path, found None")
         sides, excess = _int("sides", sides), _float("excess", excess)
         if not 0 < sides < 2**31:
             raise ValueError(f"sides: {sides} is out of range")
-        status = lib.fmb_robot_flat_read(
-            _path("path", path), _path("srdf", srdf), _path("package_path", package_path), _pointer(place), sides,
-            excess, bool(objects), ctypes.byref(handle))
-        if status:
-            why = lib.fmb_robot_why(handle).decode(errors="replace")
-            lib.fmb_robot_free(handle)
-            raise Error(why)
+        options = _Options(_path("srdf", srdf), _path("package_path", package_path), (_REAL * 6)(*place.tolist()), sides,
+                           excess, bool(objects))
+        self._made = made = _Made("fmb_robot", "_read", _path("path", path), ctypes.byref(options))
+        self._lib, self._free = made._lib, _free_nothing  # made frees the robot
 
         def names(function: Any) -> tuple[str, ...]:
             found = ctypes.POINTER(ctypes.c_char_p)()
-            return tuple(found[i].decode() for i in range(function(handle, ctypes.byref(found))))
+            return tuple(found[i].decode() for i in range(function(made._handle, ctypes.byref(found))))
 
-        self.joints, self.links = names(lib.fmb_robot_joints), names(lib.fmb_robot_links)
+        self.joints, self.links = names(self._lib.fmb_robot_joints), names(self._lib.fmb_robot_links)
         values = [array("d", bytes(8 * len(self.joints))) for _ in range(3)]
-        lib.fmb_robot_limits(handle, *map(_pointer, values[:2]))
-        lib.fmb_robot_home(handle, _pointer(values[2]))
+        self._lib.fmb_robot_limits(made._handle, *map(_pointer, values[:2]))
+        self._lib.fmb_robot_home(made._handle, _pointer(values[2]))
         self.lower, self.upper, self.home = (
             memoryview(value) if numpy is None else numpy.array(value) for value in values)
-        self.excess = lib.fmb_robot_excess(handle)
-        self._base = place
-        self._handle = handle.value
-        self._bodies = self._make(None, []).bodies()
-
-    def _make(self, world: Optional[Scene], ignore: Sequence[Any]) -> _FlatScene:
-        n = len(world) if world else 0
-        pairs = _flat("ignored", world.ignored if world else [], "q", ("m", 2))[0]
-        names = [_text("ignore", name) for pair in ignore for name in pair]
-        return _FlatScene("fmb_robot_flat_make", self._handle, world and _lib.fmb_flat_placements(world._handle),
-                          (ctypes.c_char_p * n)(*(_text("links", link) for link in world.links) if world else ()),
-                          n, world.margin if world else 0.0, _pointer(pairs), len(pairs),
-                          (ctypes.c_char_p * len(names))(*names), len(ignore))
+        self.excess = self._lib.fmb_robot_excess(made._handle)
+        self._handle = made._handle
 
     def scene(self, world: Optional[Scene] = None) -> Scene:
         """A scene of the robot at home: first the bodies of the links, in the order of links; then those
@@ -1112,14 +1079,22 @@ class Robot(_Handle):
 
         world: a Scene in 3D, as it is now; of a JSON file with links, see Scene.from_json()
         """
-        if world is not None and not isinstance(world, Scene):
-            raise TypeError(f"world: expected a Scene, found {world!r:.40}")
-        flat = self._make(world, self._ignore)
-        order = sorted(range(len(world)), key=lambda i: world.links[i] is None) if world else []
-        return flat.scene(self._bodies + [world.bodies[i] for i in order], margin=flat._settings[1],
-                          duration=world.duration if world else None,
-                          _robot=(self, flat, (ctypes.c_double * len(self.joints))(),
-                                  ctypes.cast(_lib.fmb_flat_take, ctypes.c_void_p).value))
+        around, bodies = None, []
+        if world is not None:
+            if not isinstance(world, Scene):
+                raise TypeError(f"world: expected a Scene, found {world!r:.40}")
+            n, pairs = len(world), _flat("ignored", world.ignored, "q", ("m", 2))[0].tolist()
+            of = _Placed(_lib.fmb_flat_placements(world._handle), n, margin=world.margin, ignored_count=len(pairs),
+                         ignored=(_UNSIGNED * (2 * len(pairs)))(*itertools.chain(*pairs)))
+            around = _World(ctypes.pointer(of), (_TEXT * n)(*[_text("links", link) for link in world.links]))
+            bodies = [world.bodies[i] for i in sorted(range(n), key=lambda i: world.links[i] is None)]
+        names = [_text("ignore", name) for pair in self._ignore for name in pair]
+        made = _Made("fmb_robot_scene", "", self._handle, around and ctypes.byref(around), int(around is not None),
+                     (_TEXT * len(names))(*names), len(self._ignore), keeps=(self._made, world, around))
+        of = self._lib.fmb_robot_scene_get(made._handle).contents
+        return _scene_of(of, made, bodies, duration=world.duration if world else None,
+                         _robot=(self, made, (_REAL * len(self.joints))(), of.placements,
+                                 self._lib.fmb_robot_moved(made._handle)))
 
     def place(self, scene: Scene, q: Array) -> None:
         """Poses the links and what they carry; all else in the scene stays where it is.
@@ -1127,7 +1102,7 @@ class Robot(_Handle):
         scene: of scene()
         q: (len(joints),), finite values of the joints; limits are not checked
         """
-        robot, flat, values, take = getattr(scene, "_robot", None) or 4 * (None,)
+        robot, made, values, placements, moved = getattr(scene, "_robot", None) or 5 * (None,)
         if robot is not self:
             raise ValueError("scene: expected a scene of this robot: scene() makes one")
         numbers = q.tolist() if numpy is not None and q.__class__ is numpy.ndarray and q.ndim == 1 else q
@@ -1136,5 +1111,6 @@ class Robot(_Handle):
                 values[:] = numbers
             except (TypeError, ValueError):
                 values[:] = _flat("q", q, "d", (len(self.joints),))[0].tolist()
-            if self._lib.fmb_robot_flat_place(flat._handle, values, take, scene._handle):
-                raise Error("q: " + self._lib.fmb_robot_flat_why(flat._handle).decode(errors="replace"))
+            if self._lib.fmb_robot_place(made._handle, values):
+                raise Error("q: " + made.why())
+            _lib.fmb_flat_take(scene._handle, placements, moved)

@@ -21,61 +21,58 @@ int fmb_flat_abi(void)
 
 /* ---- Bodies ---- */
 
-struct fmb_flat_body {
-    struct fmb_body body;
-    struct fmb_frame *frames;
-    double *vertices; /* of hulls */
-};
-
-static int make_body(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
-                     const double *numbers, struct fmb_flat_body *out)
+/* Finishes a body, and frees it if there was an error. */
+static int end_body(struct fmb_body *body, int status, const struct fmb_frame *frames, size_t count,
+                    const struct fmb_body **out)
 {
-    double *vertices = out->vertices;
-    for (size_t i = 0; i < count; i++) {
-        const struct geometry_shape shape = geometry_shape(shapes[i]);
-        const size_t n = (size_t) counts[i];
-        const size_t before = shape.has_radius && n > 0; /* the radius comes first */
-        const enum fmb_status status =
-            frame_of_numbers(dim, shape.shape, shape.by_vertices, before ? numbers[0] : 0,
-                             numbers + before, n - before, &vertices, &out->frames[i]);
-        if (status != FMB_OK)
-            return (int) status;
-        numbers += n;
-    }
-    return (int) fmb_body_make_frames(out->frames, count, &out->body);
-}
-
-int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
-                       const double *numbers, struct fmb_flat_body **out)
-{
-    if (count > FMB_FRAMES_MAX)
-        return FMB_OVER_LIMIT;
-    size_t doubles = 0;
-    for (size_t i = 0; i < count && dim > 0; i++)
-        if (geometry_shape(shapes[i]).shape == FMB_HULL)
-            doubles += fmb_hull_doubles(dim, (size_t) counts[i] / (size_t) dim);
-    struct fmb_flat_body *body = calloc(1, sizeof *body);
-    int status = FMB_CLIENT_NO_MEMORY;
-    if (body) {
-        body->frames = malloc((count + 1) * sizeof *body->frames);
-        body->vertices = malloc((doubles + 1) * sizeof(double));
-        if (body->frames && body->vertices)
-            status = make_body(dim, count, shapes, counts, numbers, body);
-    }
+    if (status == FMB_OK)
+        status = (int) fmb_body_make_frames(frames, count, body);
     if (status == FMB_OK)
         *out = body;
     else
-        fmb_flat_body_free(body);
+        free(body);
     return status;
 }
 
-void fmb_flat_body_free(struct fmb_flat_body *body)
+int fmb_flat_body_make(int dim, int shape, const double *numbers, size_t count,
+                       const struct fmb_body **out)
 {
+    const struct geometry_shape of = geometry_shape(shape);
+    const size_t before = of.has_radius && count > 0; /* the radius comes first */
+    const size_t doubles =
+        of.shape == FMB_HULL && dim > 0 ? fmb_hull_doubles(dim, count / (size_t) dim) : 0;
+    struct fmb_frame frame;
+    struct fmb_body *body = malloc(sizeof *body + doubles * sizeof(double));
     if (!body)
-        return;
-    free(body->frames);
-    free(body->vertices);
-    free(body);
+        return FMB_CLIENT_NO_MEMORY;
+    double *vertices = (void *) (body + 1);
+    const enum fmb_status status =
+        frame_of_numbers(dim, of.shape, of.by_vertices, before ? numbers[0] : 0, numbers + before,
+                         count - before, &vertices, &frame);
+    return end_body(body, (int) status, &frame, 1, out);
+}
+
+int fmb_flat_body_join(const struct fmb_body *const *parts, size_t count,
+                       const struct fmb_body **out)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += parts[i]->frame_count;
+    if (total > FMB_FRAMES_MAX)
+        return FMB_OVER_LIMIT;
+    struct fmb_body *body = malloc(sizeof *body + total * sizeof(struct fmb_frame));
+    if (!body)
+        return FMB_CLIENT_NO_MEMORY;
+    struct fmb_frame *frames = (void *) (body + 1), *end = frames;
+    for (size_t i = 0; i < count; i++)
+        for (unsigned k = 0; k < parts[i]->frame_count; k++)
+            *end++ = *fmb_body_frame(parts[i], k);
+    return end_body(body, FMB_OK, frames, total, out);
+}
+
+void fmb_flat_body_free(const struct fmb_body *body)
+{
+    free((void *) body);
 }
 
 double fmb_flat_cylinder(double radius, double length, int sides, double *vertices)
@@ -148,13 +145,13 @@ static int refuse(struct fmb_flat_scene *scene, int status, const char *argument
     return status;
 }
 
-static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const *bodies,
+static int fill_scene(struct fmb_flat_scene *scene, const struct fmb_body *const *bodies,
                       const int64_t *ids, const int64_t *groups, const char *const *names)
 {
     char *end = scene->names;
     for (size_t i = 0; i < scene->placement_count; i++) {
         struct fmb_placement *placement = &scene->placements[i];
-        placement->body = &bodies[i]->body;
+        placement->body = bodies[i];
         placement->id = ids[i];
         placement->group = groups[i];
         if (placement->body->dim != scene->dim)
@@ -172,7 +169,7 @@ static int fill_scene(struct fmb_flat_scene *scene, struct fmb_flat_body *const 
     return FMB_OK;
 }
 
-int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const int64_t *ids,
+int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, const int64_t *ids,
                         const int64_t *groups, const char *const *names,
                         struct fmb_flat_scene **out)
 {
@@ -186,7 +183,7 @@ int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const
     for (size_t i = 0; i < count; i++)
         bytes += names[i] ? strlen(names[i]) + 1 : 0;
     scene->placement_count = count;
-    scene->dim = bodies[0]->body.dim;
+    scene->dim = bodies[0]->dim;
     scene->single = true;
     scene->placements = calloc(count, sizeof *scene->placements);
     scene->prepared = aligned_alloc(64, count * sizeof *scene->prepared);
@@ -276,15 +273,13 @@ int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
     return FMB_OK;
 }
 
-const void *fmb_flat_placements(const struct fmb_flat_scene *scene)
+const struct fmb_placement *fmb_flat_placements(const struct fmb_flat_scene *scene)
 {
     return scene->placements;
 }
 
-void fmb_flat_take(void *of, const void *placements, size_t count)
+void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *from, size_t count)
 {
-    struct fmb_flat_scene *scene = of;
-    const struct fmb_placement *from = placements;
     for (size_t i = 0; i < count && i < scene->placement_count; i++) {
         struct fmb_placement *to = &scene->placements[i];
         memcpy(to->position, from[i].position, sizeof to->position);
@@ -559,84 +554,62 @@ size_t fmb_flat_count(const struct fmb_flat_scene *scene)
     return scene->count;
 }
 
-/* Copies vectors of dim numbers, unless from or out is NULL. from: the first vector; rows are
- * stride bytes apart and have `vectors` vectors each. */
-static void spread(const struct fmb_flat_scene *scene, const void *from, size_t stride, int vectors,
-                   int dim, double *out)
+/* Appends vectors of dim numbers of each answer to the doubles at *to. from: the first vector; rows
+ * are stride bytes apart and have `vectors` vectors each. */
+static void put(const struct fmb_flat_scene *scene, const void *from, size_t stride, int vectors,
+                int dim, void **to)
 {
-    for (size_t k = 0; from && out && k < scene->count; k++) {
+    double *out = *to;
+    for (size_t k = 0; k < scene->count; k++) {
         const double *row = (const void *) ((const char *) from + k * stride);
-        for (int v = 0; v < vectors; v++, row += FMB_DIM_MAX, out += dim)
-            memcpy(out, row, (size_t) dim * sizeof(double));
+        for (int v = 0; v < vectors; v++, out += dim)
+            memcpy(out, row + v * FMB_DIM_MAX, (size_t) dim * sizeof(double));
     }
+    *to = out;
 }
 
-void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
-                      int32_t *statuses, double *contacts, double *boxes, double *points,
-                      double *gaps, double *directions, double *times, double *witnesses,
-                      int64_t *frames)
+static void put_gaps(const struct fmb_flat_scene *scene, void **to)
+{
+    struct fmb_gap *gap = scene->column[GAPS].data;
+    const int dim = scene->dim;
+    for (size_t k = 0; k < scene->count; k++)
+        if (!gap[k].has_witness) {
+            gap[k].time = NAN;
+            for (int i = 0; i < FMB_DIM_MAX; i++)
+                gap[k].witness[0][i] = gap[k].witness[1][i] = NAN;
+        }
+    put(scene, gap->bounds, sizeof *gap, 1, 2, to);
+    put(scene, gap->direction, sizeof *gap, 1, dim, to);
+    put(scene, &gap->time, sizeof *gap, 1, 1, to);
+    put(scene, gap->witness, sizeof *gap, 2, dim, to);
+    int64_t *frames = *to;
+    for (size_t k = 0; k < scene->count; k++)
+        for (int i = 0; i < 2; i++)
+            *frames++ = gap[k].frame[i];
+    *to = frames;
+}
+
+void fmb_flat_pack(const struct fmb_flat_scene *scene, void *data)
 {
     const size_t n = scene->count;
-    const struct column *column = scene->column;
-    const unsigned(*pair)[2] = scene->has[PAIRS] ? column[PAIRS].data : NULL;
-    const unsigned char *verdict = column[VERDICTS].data;
-    const int32_t *status = scene->has[STATUSES] ? column[STATUSES].data : NULL;
-    const struct fmb_gap *gap = n && scene->has[GAPS] ? column[GAPS].data : NULL;
-    for (size_t k = 0; pairs && pair && k < n; k++) {
-        pairs[2 * k] = pair[k][0];
-        pairs[2 * k + 1] = pair[k][1];
-    }
-    if (verdicts && n)
-        memcpy(verdicts, verdict, n);
-    if (statuses && status && n)
-        memcpy(statuses, status, n * sizeof *status);
-    if (contacts && n && scene->has[CONTACTS])
-        memcpy(contacts, column[CONTACTS].data, n * sizeof(double[2]));
-    spread(scene, scene->has[BOXES] ? column[BOXES].data : NULL, column_width[BOXES], 2, scene->dim,
-           boxes);
-    spread(scene, scene->has[POINTS] ? column[POINTS].data : NULL, column_width[POINTS], 1,
-           1 + scene->dim, points);
-    if (!gap)
+    const unsigned *pair = scene->column[PAIRS].data;
+    int64_t *pairs = data;
+    if (n == 0)
         return;
-    spread(scene, gap->bounds, sizeof *gap, 1, 2, gaps);
-    spread(scene, gap->direction, sizeof *gap, 1, scene->dim, directions);
-    spread(scene, &gap->time, sizeof *gap, 1, 1, times);
-    spread(scene, gap->witness, sizeof *gap, 2, scene->dim, witnesses);
-    for (size_t k = 0; k < n; k++) {
-        if (times && !gap[k].has_witness)
-            times[k] = NAN;
-        for (int i = 0; witnesses && !gap[k].has_witness && i < 2 * scene->dim; i++)
-            witnesses[k * 2 * (size_t) scene->dim + (size_t) i] = NAN;
-        for (int i = 0; frames && i < 2; i++)
-            frames[2 * k + (size_t) i] = gap[k].frame[i];
-    }
-}
-
-/* Returns *at, and moves it on by a column of n rows; or NULL if it is not wanted. */
-static void *take_column(char **at, bool wanted, size_t n, size_t width)
-{
-    void *column = wanted ? *at : NULL;
-    *at += wanted ? n * width : 0;
-    return column;
-}
-
-void fmb_flat_pack(const struct fmb_flat_scene *scene, int listed, unsigned want, void *data)
-{
-    const size_t n = scene->count, dim = (size_t) scene->dim, real = sizeof(double);
-    const bool gap = want & FMB_WANT_GAP;
-    char *at = data;
-    int64_t *pairs = take_column(&at, !listed, n, 2 * sizeof *pairs);
-    double *contacts = take_column(&at, want & FMB_WANT_TIMES, n, 2 * real);
-    double *boxes = take_column(&at, want & FMB_WANT_BOX, n, 2 * dim * real);
-    double *points = take_column(&at, want & FMB_WANT_POINT, n, (1 + dim) * real);
-    double *gaps = take_column(&at, gap, n, 2 * real);
-    double *directions = take_column(&at, gap, n, dim * real);
-    double *times = take_column(&at, gap, n, real);
-    double *witnesses = take_column(&at, gap, n, 2 * dim * real);
-    int64_t *frames = take_column(&at, gap, n, 2 * sizeof *frames);
-    int32_t *statuses = take_column(&at, true, n, sizeof *statuses);
-    fmb_flat_answers(scene, pairs, (uint8_t *) at, statuses, contacts, boxes, points, gaps,
-                     directions, times, witnesses, frames);
+    for (size_t i = 0; scene->has[PAIRS] && i < 2 * n; i++)
+        *pairs++ = pair[i];
+    data = pairs;
+    for (int c = CONTACTS; c < GAPS; c++)
+        if (scene->has[c])
+            put(scene, scene->column[c].data, column_width[c], c == BOXES ? 2 : 1,
+                c == CONTACTS ? 2 : scene->dim + (c == POINTS), &data);
+    if (scene->has[GAPS])
+        put_gaps(scene, &data);
+    if (scene->has[STATUSES])
+        memcpy(data, scene->column[STATUSES].data, n * sizeof(int32_t));
+    else
+        memset(data, 0, n * sizeof(int32_t));
+    memcpy((int32_t *) data + n, scene->column[VERDICTS].data, n);
 }
 
 /* ---- The bus ---- */

@@ -1,6 +1,6 @@
 /* libfmb and libfmb-client for languages that call C without a compiler. Arguments are numbers,
- * flat arrays and opaque handles; no struct, no bool and no callback crosses this interface. fmb.py
- * uses it. fmb.h and fmb_client.h define what the numbers mean.
+ * flat arrays and opaque handles; no bool and no callback crosses this interface, and of structs
+ * only pointers. fmb.py uses it. fmb.h and fmb_client.h define what the numbers mean.
  *
  * Arrays are row-major and owned by the caller, who may change them after the call. dim is that of
  * the bodies, 2 or 3.
@@ -12,6 +12,8 @@
  * threads may share them. */
 #ifndef FMB_FLAT_H
 #define FMB_FLAT_H
+
+#include "fmb.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -27,19 +29,22 @@ int fmb_flat_abi(void);
 
 /* ---- Bodies ---- */
 
-struct fmb_flat_body;
-
-/* Makes a body.
- * In:  count    number of frames
- *      shapes   [count], values of placement_t.shapes
- *      counts   [count]: how many of the numbers each frame has
- *      numbers  frame after frame, in the order of placement_t.numbers
+/* Makes a body of one frame.
+ * In:  shape    a value of placement_t.shapes
+ *      numbers  [count], in the order of placement_t.numbers
  * Out: *out     set only if the status is FMB_OK; to be freed after the scenes that use it
- * Returns a status of fmb_frame_make(), fmb_frame_make_vertices(), fmb_frame_make_hull(),
- * fmb_frame_inflate() or fmb_body_make_frames(); or NO_MEMORY. */
-int fmb_flat_body_make(int dim, size_t count, const int32_t *shapes, const int64_t *counts,
-                       const double *numbers, struct fmb_flat_body **out);
-void fmb_flat_body_free(struct fmb_flat_body *body); /* may be NULL */
+ * Returns a status of fmb_frame_make(), fmb_frame_make_vertices(), fmb_frame_make_hull() or
+ * fmb_frame_inflate(); or NO_MEMORY. */
+int fmb_flat_body_make(int dim, int shape, const double *numbers, size_t count,
+                       const struct fmb_body **out);
+
+/* Makes a body of the frames of others, in their order; parts: [count], which must outlive it.
+ * Returns a status of fmb_body_make_frames(), or NO_MEMORY; *out as above. */
+int fmb_flat_body_join(const struct fmb_body *const *parts, size_t count,
+                       const struct fmb_body **out);
+
+/* Frees a body that was made by the functions above. May be NULL. */
+void fmb_flat_body_free(const struct fmb_body *body);
 
 /* Makes a hull that contains a cylinder about z, centred at 0.
  * In:  radius, length  finite, 0 or more
@@ -60,7 +65,7 @@ struct fmb_flat_scene;
  * Out: *out    set unless the status is NO_MEMORY, for fmb_flat_why(); to be freed
  * Returns FMB_OK, FMB_NO_FRAMES (count is 0), FMB_DIMENSIONS_DIFFER, FMB_BAD_ID, FMB_BAD_NAME,
  * FMB_OVER_LIMIT (2^31 bodies), or NO_MEMORY. */
-int fmb_flat_scene_make(size_t count, struct fmb_flat_body *const *bodies, const int64_t *ids,
+int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, const int64_t *ids,
                         const int64_t *groups, const char *const *names,
                         struct fmb_flat_scene **out);
 void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
@@ -71,12 +76,13 @@ void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
  * Returns FMB_OK, FMB_BAD_PAIR or NO_MEMORY. */
 int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, size_t count);
 
-/* Returns the placements, an array of struct fmb_placement. */
-const void *fmb_flat_placements(const struct fmb_flat_scene *scene);
+/* Returns the placements. */
+const struct fmb_placement *fmb_flat_placements(const struct fmb_flat_scene *scene);
 
 /* Copies the poses of the first count elements of such an array, of valid poses, to those of the
  * scene. */
-void fmb_flat_take(void *scene, const void *placements, size_t count);
+void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *placements,
+                   size_t count);
 
 /* In a child process after a fork during which another thread was using the scene: makes the scene
  * usable, without answers. If the thread was in fmb_flat_place() or fmb_flat_take(), the poses of
@@ -129,32 +135,21 @@ int64_t fmb_flat_decide_all(struct fmb_flat_scene *scene, double duration, int i
 /* Returns the number of answers that the scene keeps. */
 size_t fmb_flat_count(const struct fmb_flat_scene *scene);
 
-/* Copies the answers. Each array may be NULL. Those that were not wanted are unchanged. There are
- * gaps, too, if the margin is not 0.
- * Out: pairs       [n][a, b]; of a list they are not set
- *      verdicts    [n], enum fmb_verdict; 0: none
- *      statuses    [n], FMB_OK, or why there is no verdict; of answers in process, which all have
- *                  one, they are not set
- *      contacts    [n][first, last], NAN unless they meet
- *      boxes       [n][lower, upper][dim], NAN unless they meet
- *      points      [n][time, coordinates], NAN unless they meet
- *      gaps        [n][lower, upper bound], NAN if there is none; the arrays below are then
- *                  undefined
- *      directions  [n][dim]
- *      times       [n], NAN unless there are witness points
- *      witnesses   [n][of a, of b][dim], NAN where there are none
- *      frames      [n][of a, of b], indices of the frames that have this gap */
-void fmb_flat_answers(const struct fmb_flat_scene *scene, int64_t *pairs, uint8_t *verdicts,
-                      int32_t *statuses, double *contacts, double *boxes, double *points,
-                      double *gaps, double *directions, double *times, double *witnesses,
-                      int64_t *frames);
-
-/* As fmb_flat_answers(), into one memory.
- * In:  listed  not 0: of a list of pairs
- *      want    as it was wanted; with FMB_WANT_GAP if the margin was not 0
- * Out: data    aligned for doubles: pairs (unless listed), contacts, boxes, points, gaps,
- * directions, times, witnesses and frames, as wanted, then statuses and verdicts, without spaces */
-void fmb_flat_pack(const struct fmb_flat_scene *scene, int listed, unsigned want, void *data);
+/* Copies the answers, n of them, to one memory, which is aligned for doubles: those of the arrays
+ * below that were wanted, without spaces. There are gaps, too, if the margin is not 0.
+ *     pairs       int64 [n][a, b]; not of a list, nor of fmb_flat_pair()
+ *     contacts    double [n][first, last], NAN unless they meet
+ *     boxes       double [n][lower, upper][dim], NAN unless they meet
+ *     points      double [n][time, coordinates], NAN unless they meet
+ *     gaps        double [n][lower, upper bound], NAN if there is none; the next four are then
+ *                 undefined
+ *     directions  double [n][dim]
+ *     times       double [n], NAN unless there are witness points
+ *     witnesses   double [n][of a, of b][dim], NAN where there are none
+ *     frames      int64 [n][of a, of b], indices of the frames that have this gap
+ *     statuses    int32 [n], FMB_OK, or why there is no verdict
+ *     verdicts    uint8 [n], enum fmb_verdict; 0: none */
+void fmb_flat_pack(const struct fmb_flat_scene *scene, void *data);
 
 /* ---- The bus ---- */
 

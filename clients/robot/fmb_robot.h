@@ -96,6 +96,17 @@ struct fmb_robot_world {
     const char *name; /* for messages, such as that of a file; NULL: none */
 };
 
+/* Bodies of a file. */
+struct fmb_robot_json;
+
+/* Reads the only scene of a JSON file, whose bodies may have a "link".
+ * Out: *out  set in any case, for fmb_robot_json_why(); to be freed after the scenes with its
+ * bodies Returns 0; or -1 after an error. */
+int fmb_robot_json_read(const char *path, struct fmb_robot_json **out);
+void fmb_robot_json_free(struct fmb_robot_json *json); /* may be NULL */
+const char *fmb_robot_json_why(const struct fmb_robot_json *json);
+const struct fmb_robot_world *fmb_robot_json_get(const struct fmb_robot_json *json);
+
 /* Makes a scene: first the bodies of links, as placements 0 to number - 1 with ids from 1 on and
  * the names of the links; then carried bodies; then the others, each in the order of the worlds.
  * Bodies whose ids are taken get others. Parts of one rigid body are of one group. duration and

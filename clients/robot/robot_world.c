@@ -1,5 +1,6 @@
 #include "robot_world.h"
 
+#include "allocate.h"
 #include "complain.h"
 #include "json.h"
 #include "robot_scene.h"
@@ -7,17 +8,20 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-bool robot_world_read_json(const char *path, struct owned_scene *out,
-                           char error[ROBOT_WORLD_ERROR_MAX])
+enum { ERROR_MAX = 4800 };
+
+/* Reads the only scene of a JSON file. Returns false after an error: one line of text. */
+static bool read_json(const char *path, struct owned_scene *out, char error[ERROR_MAX])
 {
     struct owned_scene second;
     const int fd = open(path, O_RDONLY | O_CLOEXEC);
     memset(out, 0, sizeof *out);
     if (fd < 0) {
-        snprintf(error, ROBOT_WORLD_ERROR_MAX, "%s: %s", path, strerror(errno));
+        snprintf(error, ERROR_MAX, "%s: %s", path, strerror(errno));
         return false;
     }
     struct json_reader *reader = json_open(fd);
@@ -27,16 +31,47 @@ bool robot_world_read_json(const char *path, struct owned_scene *out,
     if (good)
         outcome = json_next(reader, &second);
     if (good && outcome == JSON_SCENE) {
-        snprintf(error, ROBOT_WORLD_ERROR_MAX, "%s: expected one scene, found a second one", path);
+        snprintf(error, ERROR_MAX, "%s: expected one scene, found a second one", path);
         scene_clear(&second);
         good = false;
     } else if (outcome != JSON_END) {
-        snprintf(error, ROBOT_WORLD_ERROR_MAX, "%s: %s", path, json_error(reader));
+        snprintf(error, ERROR_MAX, "%s: %s", path, json_error(reader));
         good = false;
     }
     json_close(reader);
     close(fd);
     return good;
+}
+
+struct fmb_robot_json {
+    struct owned_scene owner;
+    struct fmb_robot_world world;
+    char why[ERROR_MAX];
+};
+
+int fmb_robot_json_read(const char *path, struct fmb_robot_json **out)
+{
+    struct fmb_robot_json *json = *out = allocate(1, sizeof *json);
+    const bool good = read_json(path, &json->owner, json->why);
+    json->world = (struct fmb_robot_world){&json->owner.scene, json->owner.links, NULL};
+    return good ? 0 : -1;
+}
+
+void fmb_robot_json_free(struct fmb_robot_json *json)
+{
+    if (json)
+        scene_clear(&json->owner);
+    free(json);
+}
+
+const char *fmb_robot_json_why(const struct fmb_robot_json *json)
+{
+    return json->why;
+}
+
+const struct fmb_robot_world *fmb_robot_json_get(const struct fmb_robot_json *json)
+{
+    return &json->world;
 }
 
 /* Whether a file is XML: it begins with <, after white space and a byte order mark. */
@@ -61,10 +96,10 @@ void robot_world_print(const char *path, const char *text)
 bool robot_world_read(const char *path, const struct fmb_robot_options *options,
                       struct robot_world *out)
 {
-    char error[ROBOT_WORLD_ERROR_MAX];
+    char error[ERROR_MAX];
     *out = (struct robot_world){.path = path};
     if (!is_xml(path)) {
-        if (!robot_world_read_json(path, &out->json, error)) {
+        if (!read_json(path, &out->json, error)) {
             complain("%s%s", error,
                      strstr(error, ": no body has the ") ? " (--ignore takes names of links)" : "");
             return false;

@@ -6,12 +6,6 @@
 #include "fmb_robot.h"
 #include "scene.h"
 
-/* Reads the only scene of a JSON file, whose bodies may have a "link". Returns false after an
- * error: one line of text. */
-enum { ROBOT_WORLD_ERROR_MAX = 4800 };
-bool robot_world_read_json(const char *path, struct owned_scene *out,
-                           char error[ROBOT_WORLD_ERROR_MAX]);
-
 struct robot_world {
     const char *path;
     struct owned_scene json;       /* of JSON */

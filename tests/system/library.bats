@@ -29,7 +29,7 @@ setup() {
     cp "$FMB_BUILD"/man/*.[18] msgs/*.lcm "$BATS_TEST_TMPDIR"
     (cd "$BATS_TEST_TMPDIR" && for name in *.*; do echo "$name"; done
     for name in LICENSE fmb fmb fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb-robot.pc fmb.h fmb.pc \
-        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmb_robot_flat.h fmbd fmbd fmbd.service libfmb-client.a \
+        fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmbd fmbd fmbd.service libfmb-client.a \
         libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
         libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
         sort | diff - <(find "$root" ! -type d -printf '%f\n' | sort)
@@ -267,7 +267,7 @@ END
         case $name in
         fmb) headers="$root/include/fmb.h $root/include/fmb_batch.h" ;;
         fmb-client) headers="$root/include/fmb_client.h $root/include/fmb_flat.h" ;;
-        fmb-robot) headers="$root/include/fmb_robot.h $root/include/fmb_robot_flat.h" ;;
+        fmb-robot) headers=$root/include/fmb_robot.h ;;
         esac
         nm -D --defined-only "$file" | awk '$2 != "A" { print $3 }' > "$BATS_TEST_TMPDIR/names"
         grep -qx "${name/-/_}_\(status_text\|read\)" "$BATS_TEST_TMPDIR/names"
@@ -348,22 +348,22 @@ END
 END
     echo '{"dim": 3, "bodies": [{"id": 1, "shape": "sphere", "radius": 0.5, "position": [0.5,1.5e0,0]}]}' > s.json
     cat > comma.c << 'END'
-#include <fmb_robot_flat.h>
+#include <fmb_robot.h>
 #include <locale.h>
 #include <stdio.h>
 int main(void)
 {
     struct fmb_robot *robot;
     struct fmb_robot_scene *scene;
-    struct fmb_robot_flat *flat;
+    struct fmb_robot_json *json;
     char text[8];
     if (!setlocale(LC_NUMERIC, "locale") || fmb_robot_read("robot.urdf", NULL, &robot) != 0) {
         puts(fmb_robot_why(robot));
         return 1;
     }
     snprintf(text, sizeof text, "%.1f", 0.5); /* the program's own locale holds after the call */
-    if (fmb_robot_flat_json("s.json", &flat) != 0 ||
-        ((const struct fmb_placement *) fmb_robot_flat_placements(flat))->position[1] != 1.5)
+    if (fmb_robot_json_read("s.json", &json) != 0 ||
+        fmb_robot_json_get(json)->scene->placements[0].position[1] != 1.5)
         return 2;
     fmb_robot_scene(robot, NULL, 0, NULL, 0, &scene);
     const struct fmb_body *body = fmb_robot_scene_get(scene)->placements[0].body;
