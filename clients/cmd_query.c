@@ -40,7 +40,7 @@ static const char usage[] =
     "                   touching: or only touches; near: or is within the margin\n"
     "  --box            give the box of the intersection too\n"
     "  --point          give a point of each contact too, and a time at which both\n"
-    "                   bodies hold it\n"
+    "                   bodies contain it\n"
     "  --gap            give the signed distance too: how far apart the bodies are,\n"
     "                   or minus how deep they overlap, as two bounds; with --json\n"
     "                   also the direction that proves the lower one, and the nearest\n"

@@ -25,15 +25,15 @@ static const char usage[] =
     "Prints a robot as a scene for 'fmb query': a body for each link, with its name,\n"
     "made of its <collision> elements. A link without any has no body. Boxes, spheres\n"
     "and capsules are exact. A mesh (STL, OBJ, PLY, COLLADA) becomes its convex\n"
-    "hull. If that has more than 1024 vertices, or a body more than 63500 bytes, it\n"
-    "has fewer vertices, and a radius with which it contains the mesh. With a table\n"
-    "of joint values, prints a scene for each row:\n"
+    "hull. If a hull has more than 1024 vertices, or a body takes more than 63500\n"
+    "bytes, hulls get fewer vertices, and a radius with which they contain their\n"
+    "meshes. With a table of joint values, prints a scene for each row:\n"
     "\n"
     "  fmb scene robot.urdf --joints-csv path.csv --with world.json |\n"
     "    fmb query --local --contacts --fail-if overlapping\n"
     "\n"
     "ROBOT.urdf may be '-', standard input. Paths of mesh files are relative to its\n"
-    "folder, or with '-' to the current one. A scene is one line.\n"
+    "folder, or with '-' to the current one. Each scene is printed on one line.\n"
     "\n"
     "Poses:\n"
     "  --joints LIST        NAME=VALUE,...: values of joints, in radians, or lengths\n"
@@ -44,8 +44,8 @@ static const char usage[] =
     "                       its first line; columns for mimic joints, \"label\" and\n"
     "                       \"time\" are optional. With times, a row lasts until the\n"
     "                       time of the next row. Other columns are ignored\n"
-    "  --base POSE          X,Y,Z or X,Y,Z,ROLL,PITCH,YAW: where the robot stands, as\n"
-    "                       of an <origin>\n"
+    "  --base POSE          X,Y,Z or X,Y,Z,ROLL,PITCH,YAW: the pose of the root link,\n"
+    "                       as in an <origin>\n"
     "  --limit-slack D      how far values may be outside the limits of their joints,\n"
     "                       in radians or lengths, before they are refused (0.001;\n"
     "                       inf: any). They are used as they are, and reported\n"
@@ -56,8 +56,8 @@ static const char usage[] =
     "                       radius r by at most r (1 / cos(pi/N) - 1): with 16 sides,\n"
     "                       0.02 r\n"
     "  --excess D           how far a hull may extend beyond its mesh (0), so that it\n"
-    "                       has fewer vertices, as few as that takes. How far it does\n"
-    "                       is reported, also of hulls that do not fit otherwise\n"
+    "                       needs fewer vertices. The largest distance by which one\n"
+    "                       does is reported\n"
     "  --objects            a hull for each object (o) of an OBJ file, for convex\n"
     "                       decompositions\n"
     "  --package-path DIRS  folders to search for packages, separated by colons: a\n"
@@ -67,18 +67,18 @@ static const char usage[] =
     "                       this name\n"
     "\n"
     "Scenes:\n"
-    "  --with FILE          adds bodies, may be given several times: a scene of JSON,\n"
-    "                       with its ignored pairs, duration and margin; or a URDF,\n"
-    "                       whose links are obstacles of one group. A body with\n"
-    "                       \"link\": NAME is carried by that link, and has its pose in\n"
-    "                       the link. Links have the ids from 1 on; bodies with one\n"
-    "                       of these get others\n"
+    "  --with FILE          adds the bodies of a scene of JSON, with its ignored\n"
+    "                       pairs, duration and margin; or the links of a URDF, as\n"
+    "                       obstacles of one group. May be given several times. A\n"
+    "                       body with \"link\": NAME is carried by that link, and has\n"
+    "                       its pose in the link. Links have the ids from 1 on;\n"
+    "                       bodies with one of these get others\n"
     "  --srdf FILE          ignores the pairs that an SRDF file disables, and no\n"
-    "                       others of the robot\n"
+    "                       other pairs of links\n"
     "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by name;\n"
     "                       may be given several times\n"
     "  --margin M           the margin, in place of that of the scenes\n"
-    "  --verbose            names what the messages count\n"
+    "  --verbose            lists the links, bodies and pairs that messages count\n"
     "  -h, --help\n"
     "\n"
     "Without --srdf, a link is not tested against its parent, or, if that has no\n"
@@ -167,7 +167,7 @@ struct run {
     double size[3]; /* of the bodies of links in the first pose, along each axis */
 };
 
-/* ---- What is said on stderr: at most three lines ---- */
+/* ---- Messages on stderr: at most three lines, without --verbose ---- */
 
 static FILE *begin_text(char **text, size_t *size)
 {
@@ -184,6 +184,7 @@ static void end_text(FILE *out, const char *place, char **text)
     free(*text);
 }
 
+/* Sets the size, in the current pose. */
 static void measure(struct run *run)
 {
     double most[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -209,7 +210,7 @@ static double excess_of(const struct robot_world *world)
     return world->robot ? fmb_robot_excess(world->robot) : world->json.outside;
 }
 
-static void say_robot(const struct run *run)
+static void report_robot(const struct run *run)
 {
     double excess = fmb_robot_excess(run->robot);
     char text[5][NUMBER_TEXT_MAX], more[128] = "", unit[4600] = "";
@@ -245,14 +246,14 @@ static const char *const origin_names[ROBOT_ORIGINS + 2] = {
     [ROBOT_ORIGINS] = "joined rigidly",
     [ROBOT_ORIGINS + 1] = "within groups"};
 
-static void say_srdf(const struct fmb_robot *robot, FILE *out)
+static void report_srdf(const struct fmb_robot *robot, FILE *out)
 {
     enum { NAMED = 8 };
     if (robot->unlisted > 0)
         fprintf(out, "; tested neighbours that the SRDF does not list: %zu", robot->unlisted);
     if (robot->unknown_count == 0)
         return;
-    fprintf(out, "; links of the SRDF that the robot has not: %zu (", robot->unknown_count);
+    fprintf(out, "; links of the SRDF that the robot does not have: %zu (", robot->unknown_count);
     const char *at = robot->unknown.text;
     for (int i = 0; i < NAMED && *at; i++) {
         const int length = (int) strcspn(at, "\n");
@@ -262,7 +263,7 @@ static void say_srdf(const struct fmb_robot *robot, FILE *out)
     fprintf(out, "%s)", *at ? ", ..." : "");
 }
 
-static void say_pairs(struct run *run)
+static void report_pairs(struct run *run)
 {
     struct fmb_robot_scene *scene = run->scene;
     const uint64_t n = scene->owner.scene.placement_count;
@@ -284,12 +285,12 @@ static void say_pairs(struct run *run)
             fprintf(out, "%s%" PRIu64 " %s", before, count[origin], origin_names[origin]);
             before = ", ";
         }
-    say_srdf(run->robot, out);
+    report_srdf(run->robot, out);
     end_text(out, "", &text);
 }
 
-/* table: NULL: there is none. */
-static void say_joints(const struct run *run, const struct joint_table *table)
+/* table: NULL if there is none. */
+static void report_joints(const struct run *run, const struct joint_table *table)
 {
     char *text;
     size_t size;
@@ -303,8 +304,8 @@ static void say_joints(const struct run *run, const struct joint_table *table)
     free(text);
 }
 
-/* Names what the other lines count. */
-static void say_more(const struct run *run)
+/* Lists what the other lines count. */
+static void report_more(const struct run *run)
 {
     const struct fmb_robot *robot = run->robot;
     const struct robot *tree = &robot->tree;
@@ -328,13 +329,13 @@ static void say_more(const struct run *run)
         robot_world_print("the robot has no link", robot->unknown.text);
 }
 
-static void say(struct run *run, const struct joint_table *table)
+static void report(struct run *run, const struct joint_table *table)
 {
-    say_robot(run);
-    say_pairs(run);
-    say_joints(run, table);
+    report_robot(run);
+    report_pairs(run);
+    report_joints(run, table);
     if (run->options->verbose)
-        say_more(run);
+        report_more(run);
 }
 
 /* ---- Scenes ---- */
@@ -384,7 +385,7 @@ static bool print_table(struct run *run)
     bool good = joint_table_open(run->options->table, &run->joints, &table) &&
                 print_rows(run, &table, false) && joints_check(&run->joints);
     if (good) {
-        say(run, &table);
+        report(run, &table);
         good = joint_table_rewind(&table) && print_rows(run, &table, true);
     }
     joint_table_close(&table);
@@ -397,7 +398,7 @@ static bool print_pose(struct run *run)
     if (!joints_check(&run->joints) || !place(run, 0, run->robot->tree.path))
         return false;
     measure(run);
-    say(run, NULL);
+    report(run, NULL);
     scene_json_write(stdout, &run->scene->owner);
     return true;
 }

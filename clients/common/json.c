@@ -672,7 +672,8 @@ static bool read_body(const struct place *at, void *out)
     if (!member[LINK].item)
         return true;
     if (!at->reader->links_allowed)
-        return refuse(&member[LINK], "only a scene that is added to a robot has links");
+        return refuse(&member[LINK],
+                      "only bodies that are added to a robot may have it (fmb scene --with)");
     if (!scene->links)
         scene->links = scene_alloc(scene, scene->scene.placement_count, sizeof *scene->links);
     scene->links[at->index] = body.link ? body.link : "";

@@ -74,7 +74,7 @@ enum json_outcome json_next(struct json_reader *reader, struct owned_scene *out)
  * looks like invalid JSON. Changes cJSON for the whole process. */
 void json_exit_without_memory(void);
 
-/* Allows bodies of the following scenes a "link", that of a robot, which carries them. */
+/* Accepts "link" in bodies of the following scenes: the link of a robot that carries the body. */
 void json_allow_links(struct json_reader *reader);
 
 /* After JSON_BAD and JSON_FAILED: returns the reason, one line without a line feed, valid as long

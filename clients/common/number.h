@@ -8,9 +8,10 @@
 
 enum { NUMBER_TEXT_MAX = 40 };
 
-/* Numbers are read and printed by functions of C, as in its locale, in which programs start. A
- * library may run in a program that has called setlocale(): between these calls the locale of C
- * holds for the thread. Returns that to restore. */
+/* Numbers are read and printed as in the "C" locale, in which programs start. A library may be
+ * called by a program that has called setlocale(): it reads and prints numbers between these two
+ * functions, which switch the calling thread to "C" and back. number_begin() returns the locale for
+ * number_end(). */
 locale_t number_begin(void);
 void number_end(locale_t before);
 

@@ -12,7 +12,7 @@ static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 /* Calls of progress_to() for each reading of the clock. */
 enum { STEPS = 64 };
 
-static bool allowed; /* unless it is, nothing here is written: threads do not meet */
+static bool allowed; /* if not, no variable here is written: threads may call the functions */
 
 static struct {
     const char *unit; /* NULL: there is no count, or no terminal */

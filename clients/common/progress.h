@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* Programs call this first; in libraries nothing is ever shown. */
+/* Programs call this first. Without it, as in libraries, nothing is shown. */
 void progress_allow(void);
 
 /* Begins a count of things such as "bytes", in place of any earlier one. Nothing is shown unless

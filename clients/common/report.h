@@ -49,7 +49,7 @@ struct report_columns {
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */
 };
 
-/* Writes a point of a contact for people, such as "(0.75, 0.5, 0) at 0.25 s". Returns text. In:
+/* Writes a point of a contact for readers, such as "(0.75, 0.5, 0) at 0.25 s". Returns text. In:
  * point: the time, then dim coordinates. */
 enum { REPORT_POINT_MAX = (1 + FMB_DIM_MAX) * NUMBER_TEXT_MAX + 16 };
 const char *report_point(int dim, const double *point, char text[REPORT_POINT_MAX]);
@@ -87,7 +87,7 @@ struct report_printer {
  *     {"a": 1, "b": 3, "verdict": "separated", "gap": [2, 2], "direction": [1,0,0],
  *      "witness": {"time": 0, "a": [1,0,0], "b": [3,0,0]}}
  *
- * names are there if a body has one, and a witness if the gap has one (fmb.h). frames are the
+ * "names" is present if a body has a name, "witness" if the gap has one (fmb.h). frames are the
  * indices, from 0, of the frames of a and b that have the gap, where a or b has several. Doubles
  * read back bit for bit. null is an infinite end of a box, outward; an infinite bound of a gap,
  * positive where separated, else negative; or an infinite coordinate of a point. A "certificate"

@@ -126,7 +126,8 @@ static void csv_text(FILE *out, const char *text)
     putc_unlocked('"', out);
 }
 
-/* With a comma before each. number: NULL: the row has none. */
+/* Writes a comma and a number for each column; columns from count on are empty. number: [count];
+ * NULL: all columns are empty. */
 static void csv_numbers(FILE *out, const double *number, int count, int columns)
 {
     char text[NUMBER_TEXT_MAX];
@@ -269,7 +270,7 @@ static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
     }
     if (answer->has_point) {
         report_point(dim, answer->point, point);
-        const int width = widen(&columns->point, NUMBER_SHORT_DIGITS + 1, point); /* any longer */
+        const int width = widen(&columns->point, NUMBER_SHORT_DIGITS + 1, point); /* if longer */
         fprintf(out, "  %-*s", answer->has_box ? width : 0, point);
     }
     if (answer->has_box)

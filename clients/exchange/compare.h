@@ -1,11 +1,10 @@
 /* Compares a recorded exchange (then) with a new one (now).
  *
- * They are the same if their statuses are, and the verdicts, intervals, boxes, points,
- * gaps and certificates of all pairs that both answer: bit for bit, or within a tolerance. The
- * service, times and handles are not compared. The result of a scene may answer fewer pairs than
- * requested (end_pair): pairs that only one of the two answers are not compared. If the recorded
- * result is to a query of another scene (scene_change.h), that is the only difference. No shared
- * state. */
+ * They are the same if their statuses are, and the verdicts, intervals, boxes, points, gaps and
+ * certificates of all pairs that both answer: bit for bit, or within a tolerance. The service,
+ * times and handles are not compared. The result of a scene may answer fewer pairs than requested
+ * (end_pair): pairs that only one of the two answers are not compared. If the recorded result is to
+ * a query of another scene (scene_change.h), that is the only difference. No shared state. */
 #ifndef COMPARE_H
 #define COMPARE_H
 

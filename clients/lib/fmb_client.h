@@ -109,7 +109,7 @@ struct fmb_client_answer {
     unsigned a, b;            /* indices of placements, in the order of the pair */
     int status;               /* FMB_OK, or why there is no verdict */
     const char *text;         /* text of the status, "" if FMB_OK. Valid during the callback */
-    struct fmb_answer answer; /* all 0 unless FMB_OK; its parts as wanted */
+    struct fmb_answer answer; /* all 0 unless FMB_OK; contact, box, point and gap as wanted */
     /* NULL if not wanted, or if the pair has none (fmb.h). Valid during the callback. */
     const char *certificate;
 };

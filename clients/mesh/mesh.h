@@ -39,8 +39,8 @@ struct mesh {
     unsigned (*face)[3]; /* owned; [face][corner], indices of vertices; NULL if there are none */
     /* Owned; [object_count]: the number of faces before each object (o) of an OBJ; NULL: none */
     size_t *object, object_count;
-    /* Of COLLADA: metres of a unit of the file, with which vertices were multiplied; 0: none is
-     * given, or another format. */
+    /* COLLADA: metres per unit of length, by which coordinates were multiplied; 0: the file gives
+     * none, or has another format. */
     double unit;
 };
 

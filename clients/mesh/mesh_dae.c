@@ -1,10 +1,11 @@
 /* COLLADA parser. Expat's events become a tree of elements. The nodes of the file's scene are then
  * visited, and the primitives of each instance of a geometry become vertices, transformed, and
- * faces. Text is read where it stands in the file, so that errors name its line.
+ * faces. Numbers are read from the bytes of the file, so that errors name their line.
  *
  * Files are not trusted. A document type declaration is refused, so that no entity expands. Nodes
- * may contain instances of others, which multiply: what is read is bounded with its repetitions, as
- * is the depth, and a node within itself is an error. */
+ * may contain instances of other nodes, so that a small file may describe any number of faces. So
+ * the bytes that are read, repetitions included, and the depth are bounded, and a node that
+ * contains itself is an error. */
 #include "mesh_source.h"
 
 #include "keyed_hash.h"
@@ -190,7 +191,7 @@ static bool has_value(const struct element *element, const char *name, const cha
     return found && strcmp(found, value) == 0;
 }
 
-/* Returns the <input> of a meaning; NULL: there is none. */
+/* Returns the <input> with a semantic; NULL: there is none. */
 static const struct element *find_input(const struct element *parent, const char *semantic)
 {
     const struct element *input = parent->child;
@@ -229,7 +230,7 @@ static bool read_count(struct dae *dae, const struct element *element, const cha
            refuse(dae, element, "<%s>: its %s is not a count", element->name, name);
 }
 
-/* Counts bytes from `begin` on that are read. Returns false after an error: it is too much. */
+/* Counts the bytes from begin to end as read. Returns false after an error: they are too many. */
 static bool spend(struct dae *dae, const unsigned char *begin, const unsigned char *end)
 {
     dae->bytes += (size_t) (end - begin);
@@ -282,8 +283,7 @@ static bool add_vertices(struct dae *dae, const struct element *vertices, const 
                       numbers);
     if (stride < 3 || (count > 0 && offset + stride * (count - 1) + 3 > numbers))
         return refuse(dae, accessor,
-                      "<accessor>: %zu positions from %zu on, of stride %zu, are not in %zu "
-                      "numbers",
+                      "<accessor>: %zu positions from %zu on, of stride %zu, exceed %zu numbers",
                       count, offset, stride, numbers);
     dae->vertices = vertices;
     dae->first = dae->build.mesh->vertex_count;
@@ -296,7 +296,7 @@ static bool add_vertices(struct dae *dae, const struct element *vertices, const 
             placed[axis] = row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
         }
         if (!isfinite(placed[0]) || !isfinite(placed[1]) || !isfinite(placed[2]))
-            return refuse(dae, array, "position %zu is not finite where it is placed", i);
+            return refuse(dae, array, "position %zu is not finite after the transformations", i);
         if (!mesh_add_vertex(&dae->build, placed))
             return false;
     }
@@ -360,7 +360,8 @@ static bool add_list(struct dae *dae, const struct set *set, size_t count)
 
 static bool add_set(struct dae *dae, struct set *set, const struct affine *at)
 {
-    const bool together = set->primitive == TRIANGLES || set->primitive == POLYLIST; /* in a <p> */
+    /* Whether all primitives are in one <p>. */
+    const bool together = set->primitive == TRIANGLES || set->primitive == POLYLIST;
     const struct element *element = set->element, *vertex = find_input(element, "VERTEX");
     const struct element *vcount = find_child(element, "vcount"), *vertices;
     size_t count, lists = 1, offset;
@@ -405,7 +406,7 @@ static bool add_geometry(struct dae *dae, const struct element *geometry, const 
     if (!spend(dae, geometry->begin, geometry->end))
         return false;
     if (!mesh)
-        return refuse(dae, geometry, "<geometry> has no <mesh>: others are not supported");
+        return refuse(dae, geometry, "<geometry> has no <mesh>: other kinds are not supported");
     dae->vertices = NULL;
     for (const struct element *child = mesh->child; child; child = child->next)
         for (int i = 0; i < PRIMITIVES; i++) { /* <lines> and <linestrips> have no surface */
@@ -428,7 +429,7 @@ static void compose(struct affine *at, const double inner[12])
                             outer.row[i][2] * inner[8 + j] + (j == 3 ? outer.row[i][3] : 0);
 }
 
-/* Sets n to the rotation by q[3] degrees about the axis q[0..2], not 0. */
+/* Sets n to the rotation by q[3] degrees about the axis q[0..2], which is not 0. */
 static void rotate(const double q[4], double n[12])
 {
     const double most = fmax(fmax(fabs(q[0]), fabs(q[1])), fabs(q[2]));

@@ -119,7 +119,7 @@ bool mesh_is_obj_statement(const struct mesh_source *source, const unsigned char
  * or infinity from where the largest double is no longer the nearest. The number of digits is not
  * limited. The caller checks what follows the number.
  *
- * Requires the locale of C, in which a program starts (number_begin()). */
+ * Requires the "C" locale, in which a program starts (number_begin()). */
 const unsigned char *mesh_number(const unsigned char *at, double *value);
 
 /* Numbers of binary files, in either byte order. Inline: meshes have millions of them. */

@@ -49,8 +49,8 @@ static bool make_bodies(struct fmb_robot *robot)
 static void find_neighbours(struct fmb_robot *robot)
 {
     const struct robot *tree = &robot->tree;
-    /* Of each link its own body, or else that of the nearest link above it; and the first body of
-     * the rigid body that it is part of. */
+    /* Of each link: its own body, or else that of the nearest link above it that has one; and the
+     * topmost link of the rigid body that it is part of. */
     unsigned *body = allocate(tree->link_count, sizeof *body);
     unsigned *rigid = allocate(tree->link_count, sizeof *rigid);
     robot->rigid = scene_alloc(&robot->owner, robot->body_count, sizeof *robot->rigid);
@@ -60,12 +60,12 @@ static void find_neighbours(struct fmb_robot *robot)
         const unsigned parent = j == ROBOT_ROOT ? 0 : tree->joints[j].link[0];
         const unsigned above = j == ROBOT_ROOT ? ROBOT_NO_BODY : body[parent];
         const bool fixed = j != ROBOT_ROOT && tree->joints[j].type == ROBOT_FIXED;
-        rigid[link] = fixed ? rigid[parent] : link; /* a link; then a body */
+        rigid[link] = fixed ? rigid[parent] : link;
         body[link] = own != ROBOT_NO_BODY ? own : above;
         if (own != ROBOT_NO_BODY && above != ROBOT_NO_BODY)
             robot_pairs_add(&robot->ignored, above, own, ROBOT_NEIGHBOURS);
     }
-    unsigned *first = body; /* of each rigid body, by its topmost link */
+    unsigned *first = body; /* [topmost link]: the first body of its rigid body */
     memset(first, 0xff, tree->link_count * sizeof *first);
     for (unsigned i = 0; i < robot->body_count; i++) {
         const unsigned top = rigid[robot->link[i]];

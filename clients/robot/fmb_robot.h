@@ -36,13 +36,13 @@ struct fmb_robot;
 
 /* A field that is 0 or NULL has its default. */
 struct fmb_robot_options {
-    const char *srdf;         /* file: its pairs are ignored, in place of neighbours */
+    const char *srdf;         /* SRDF file: of pairs of links, those that it disables are ignored */
     const char *package_path; /* folders of packages, separated by colons: see the README */
-    double base[6];           /* where the root is: x, y, z, and roll, pitch, yaw, as in URDF */
+    double base[6];           /* pose of the root: x, y, z, and roll, pitch, yaw, as in URDF */
     int sides;                /* of the hulls of cylinders, a multiple of 4 up to 512; 0: 16 */
-    double excess; /* how far hulls may extend beyond meshes, so that they have fewer vertices */
+    double excess; /* how far hulls may extend beyond meshes, so that they need fewer vertices */
     int objects;   /* not 0: a hull for each object of an OBJ file */
-    int bus;       /* not 0: bodies fit into a query on the bus */
+    int bus;       /* not 0: bodies have to fit into a query on the bus */
 };
 
 /* Reads a robot, with its meshes.
@@ -54,31 +54,32 @@ int fmb_robot_read(const char *path, const struct fmb_robot_options *options,
                    struct fmb_robot **out);
 void fmb_robot_free(struct fmb_robot *robot); /* may be NULL */
 
-/* Returns all that is wrong with the files, as lines separated by line feeds, each with its place:
- * "robot.urdf: line 7: joint 'elbow': ...". "" if nothing is. */
+/* Returns all errors of the files, as lines separated by line feeds, each with its place:
+ * "robot.urdf: line 7: joint 'elbow': ...". "" if there are none. */
 const char *fmb_robot_why(const struct fmb_robot *robot);
 
 /* The functions below take a robot that was read without errors. */
 
-/* Returns the number n of joints that move and follow no other: the length of q, the values of
- * these joints, in the order of the file. names: receives [n] their names; may be NULL. */
+/* Returns the number n of joints that move and follow no other, in the order of the file. It is the
+ * length of q, their values. Out: *names: [n], their names; names may be NULL. */
 size_t fmb_robot_joints(const struct fmb_robot *robot, const char *const **names);
 
-/* Out: lower, upper: [n], of q; infinite: none. */
+/* Out: lower, upper: [n], the limits of q; infinite if there are none. */
 void fmb_robot_limits(const struct fmb_robot *robot, double *lower, double *upper);
 
-/* Out: q: [n], 0, or the middle of the limits of a joint if 0 is outside. */
+/* Out: q: [n], the home pose: 0, or the middle of the limits of a joint if 0 is outside. */
 void fmb_robot_home(const struct fmb_robot *robot, double *q);
 
-/* Returns the number of links that have a body, in the order of the file. names: receives [number]
- * their names; may be NULL. */
+/* Returns the number of links that have a body, in the order of the file. Out: *names: [number],
+ * their names; names may be NULL. */
 size_t fmb_robot_links(const struct fmb_robot *robot, const char *const **names);
 
 /* Whether the pair of links a and b, indices of fmb_robot_links(), is ignored: as neighbours or
  * parts of one rigid body, or by the SRDF file. Cost: O(log(number of such pairs)). */
 int fmb_robot_ignores(const struct fmb_robot *robot, size_t a, size_t b);
 
-/* Returns how far bodies extend beyond the cylinders and meshes of the file at most. */
+/* Returns the largest distance by which bodies may extend beyond the cylinders and meshes of the
+ * file. */
 double fmb_robot_excess(const struct fmb_robot *robot);
 
 /* ---- A robot among bodies ---- */
@@ -93,7 +94,7 @@ struct fmb_robot_world {
     /* [placement_count]: the link that carries a body, whose pose is then relative to that link,
      * and which is not tested against it; NULL: none. links itself may be NULL. */
     const char *const *links;
-    const char *name; /* for messages, such as that of a file; NULL: none */
+    const char *name; /* for messages, such as the name of a file; NULL: none */
 };
 
 /* Bodies of a file. */
@@ -109,8 +110,9 @@ const struct fmb_robot_world *fmb_robot_json_get(const struct fmb_robot_json *js
 
 /* Makes a scene: first the bodies of links, as placements 0 to number - 1 with ids from 1 on and
  * the names of the links; then carried bodies; then the others, each in the order of the worlds.
- * Bodies whose ids are taken get others. Parts of one rigid body are of one group. duration and
- * margin are the largest of the worlds. The robot is at home.
+ * Bodies whose ids are taken get others. Links that fixed joints alone connect have one group,
+ * unless there is an SRDF file. duration and margin are the largest of the worlds. The robot is in
+ * its home pose.
  * In:  worlds  [world_count]
  *      ignore  [ignore_count][2], names of links or bodies: pairs that are not tested
  * Out: *out    set in any case, for fmb_robot_scene_why(); to be freed
@@ -120,7 +122,7 @@ int fmb_robot_scene(const struct fmb_robot *robot, const struct fmb_robot_world 
                     struct fmb_robot_scene **out);
 void fmb_robot_scene_free(struct fmb_robot_scene *scene); /* may be NULL */
 
-/* Returns what was wrong in the last call that failed, as lines separated by line feeds. */
+/* Returns the errors of the last call that failed, as lines separated by line feeds. */
 const char *fmb_robot_scene_why(struct fmb_robot_scene *scene);
 
 /* Returns the scene, whose placements fmb_robot_place() changes. */
@@ -131,7 +133,7 @@ const struct fmb_scene *fmb_robot_scene_get(const struct fmb_robot_scene *scene)
 size_t fmb_robot_moved(const struct fmb_robot_scene *scene);
 
 /* Poses the links and the bodies that they carry. Limits are not checked.
- * In:  q  [n], finite; of joints that turn up to 2^20 in magnitude
+ * In:  q  [n], finite; angles up to 2^20 in magnitude
  * Returns 0; or -1 after an error, and the poses are undefined.
  * Cost: O(links + joints). */
 int fmb_robot_place(struct fmb_robot_scene *scene, const double *q);

@@ -16,7 +16,7 @@ struct joint_report {
     unsigned long line; /* 0: none */
 };
 
-/* The largest of some lengths: of which joint, and in which line. */
+/* The largest of several differences, with its joint and its line. */
 struct joint_most {
     double by;
     size_t joint;
@@ -53,8 +53,8 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line);
  * without limits, or outside the limits. */
 bool joints_check(const struct joints *joints);
 
-/* Writes what there is to say about values that joints_check() passes, in parts that begin with ";
- * ": joints that are not at 0 though no value is given, values outside the limits, values that seem
+/* Describes values that joints_check() accepts, in parts that begin with a semicolon and a space:
+ * joints that are not at 0 although no value is given, values outside the limits, values that seem
  * to be in degrees, and mimic joints that do not follow. */
 void joints_describe(const struct joints *joints, FILE *out);
 
@@ -91,7 +91,7 @@ void joint_table_close(struct joint_table *table);
 enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
 enum joint_row joint_table_next(struct joint_table *table);
 
-/* Writes "rows: N, largest step ...", which joints have no column, and how many columns were
+/* Writes "rows: N, largest step ...", the joints without a column, and how many columns were
  * ignored. */
 void joint_table_describe(const struct joint_table *table, FILE *out);
 

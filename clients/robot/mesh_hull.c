@@ -2,7 +2,12 @@
  * decides exactly. If a point is separated from it, the point that is farthest in the direction of
  * their gap is selected; if that one is selected already, the separated point. Rounding in this
  * search can only select points that are not vertices. At the end, and when there are too many,
- * selected points that are in the hull of the others are removed. */
+ * selected points that are in the hull of the others are removed.
+ *
+ * mesh_hull_cover(). The point farthest from the hull of the selected points is selected next,
+ * until the distance is within the excess. Each point has an upper bound of its distance. The hull
+ * only grows, so bounds remain valid, and only those above the largest distance so far are
+ * computed again. */
 #include "mesh_hull.h"
 
 #include "allocate.h"
@@ -21,7 +26,7 @@ struct growing {
     double *point_memory;         /* of the hull of a point */
     struct fmb_body hull;
     enum fmb_status status;
-    int64_t done; /* points that have been looked at */
+    int64_t done; /* number of points that are known to be in the hull */
 };
 
 /* Makes the hull of the points that are used. Returns false on error. */
@@ -123,7 +128,7 @@ static bool comes_first(const double a[3], const double b[3])
     return a[axis] < b[axis];
 }
 
-/* Lowers the bound of point i to what holds of the current hull. */
+/* Lowers the bound of point i to its distance from the current hull. */
 static void lower_bound(struct growing *growing, size_t i, double *bound)
 {
     struct fmb_gap gap;
@@ -132,7 +137,8 @@ static void lower_bound(struct growing *growing, size_t i, double *bound)
         bound[i] = outside ? fmin(bound[i], gap.bounds[1]) : 0;
 }
 
-/* In: bound: [count], all infinite. Returns the largest of the bounds at the end. */
+/* Selects points. In/out: bound: [count], initially infinite. Returns the largest bound at the end.
+ */
 static double cover(struct growing *growing, size_t most, double excess, double *bound)
 {
     size_t best = 0; /* the farthest point */

@@ -15,18 +15,18 @@
 enum fmb_status mesh_hull(const double (*point)[3], size_t count, double (*vertex)[3],
                           size_t *found);
 
-/* As few of the points as an excess allows, and a radius with which their hull contains the others:
- * each point is at most *radius from the hull of the selected ones, exactly, and these are at most
- * `most`. So the rounded hull contains that of the points, and extends beyond it by at most
- * *radius.
+/* Selects few of the points, and a radius: no point is farther than *radius from the hull of the
+ * selected ones, which is proven. So the hull with this radius contains the hull of all points, and
+ * extends beyond it by at most *radius.
  *
  * In:  point    [count][axis], count at least 1
- *      most     1 to FMB_HULL_VERTICES_MAX
- *      excess   of the radius, 0 or more; it may be larger only if *found is `most`
- * Out: vertex   the selected points, in their order: at most `most`, or count
- *      *found, *radius
- * Returns as mesh_hull(). Cost: O(count) gaps of a point and a hull, for each halving of the radius
- * some more, and O(count * *found). */
+ *      most     the largest number of selected points, 1 to FMB_HULL_VERTICES_MAX
+ *      excess   the largest radius, 0 or more; exceeded only if *found is `most`
+ * Out: vertex   the selected points, in their order: [most], or [count] if that is less
+ *      *found   their number
+ *      *radius
+ * Returns as mesh_hull(). Cost: O(count) gaps of a point and a hull, more for each halving of the
+ * radius, and O(count * *found). */
 enum fmb_status mesh_hull_cover(const double (*point)[3], size_t count, size_t most, double excess,
                                 double (*vertex)[3], size_t *found, double *radius);
 

@@ -15,7 +15,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Lines of text: what is refused, or what there is to say. All 0: none. */
+/* Lines of text: errors, or notes. All 0: none. */
 struct robot_lines {
     FILE *out;  /* NULL: no line yet */
     char *text; /* owned, of the stream; valid after robot_lines_text() */
@@ -94,13 +94,13 @@ struct robot {
 };
 
 /* Reads a file; "-" is standard input. Returns false after errors. links and elements then hold
- * what could be read, so that meshes can be looked at; order is not set. The caller passes the
- * robot to robot_clear() in either case. */
+ * what could be read, so that errors of meshes can be found too; order is not set. The caller
+ * passes the robot to robot_clear() in either case. */
 bool robot_read(const char *path, struct robot *out);
 void robot_clear(struct robot *robot);
 
-/* Adds an error; after ROBOT_ERRORS_MAX they are only counted. path: of the file. kind: "link" or
- * "joint", which has the name; NULL: neither. Returns false. */
+/* Adds an error; errors beyond ROBOT_ERRORS_MAX are only counted. path: of the file. kind: "link"
+ * or "joint", with this name; NULL: neither. Returns false. */
 enum { ROBOT_ERRORS_MAX = 100, ROBOT_TEXT_MAX = 8192 };
 __attribute__((format(printf, 6, 7))) bool robot_refuse(struct robot *robot, const char *path,
                                                         unsigned long line, const char *kind,
@@ -122,18 +122,19 @@ struct robot_name *robot_add_name(struct robot *robot, struct robot_name **table
 /* Returns the joint of a name, or NULL. */
 const struct robot_joint *robot_find_joint(const struct robot *robot, const char *name);
 
-/* The value of a joint that has none: 0, or the middle of its limits if 0 is outside. */
+/* Returns the value of a joint for which none is given: 0, or the middle of its limits if 0 is
+ * outside. */
 double robot_home(const struct robot_joint *joint);
 
 /* Sets the values of mimic joints from those of the joints that they follow. given: [joint_count],
- * joints that do not follow; NULL: all do. */
+ * joints whose values are kept; NULL: none. */
 void robot_follow(const struct robot *robot, const bool *given, double *value);
 
 /* Returns why a value cannot be used, "is not finite" or "is beyond 1048576 radians"; or NULL. */
 const char *robot_refuse_value(const struct robot_joint *joint, double value);
 
-/* Scales q by a power of two if it is so long or short that products of many would not be doubles.
- */
+/* Scales q by a power of two if it is so long or short that a product of many such quaternions
+ * could overflow or underflow. */
 void robot_limit_length(double q[4]);
 
 /* Computes the pose of every link by forward kinematics. In: base: of the root; value:

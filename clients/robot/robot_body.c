@@ -112,8 +112,8 @@ static char *find_in_packages(const char *folders, const char *name)
     return NULL;
 }
 
-/* Whether a package.xml in a folder has this <name>. */
-static bool is_named_so(const char *folder, const char *name, size_t length)
+/* Whether a folder has a package.xml with this <name>. */
+static bool is_package(const char *folder, const char *name, size_t length)
 {
     enum { BYTES_MAX = 1 << 16 };
     char *path = output_beside(folder, "package.xml"), *text = allocate(BYTES_MAX + 1, 1);
@@ -147,7 +147,7 @@ static char *find_above(const char *robot, const char *file)
         const size_t end = strlen(folder);
         char *within = allocate(end + 2, 1);
         sprintf(within, "%s/", folder);
-        if (called || is_named_so(within, file, name))
+        if (called || is_package(within, file, name))
             path = output_beside(within, file + name + 1);
         free(within);
         *slash = '\0';
@@ -190,8 +190,8 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Adds the hull of faces first to end - 1, if there are any. object: its number; 0: none. In/out:
- * used: [vertex_count], end of the last call that used a vertex, or 0. */
+/* Adds the hull of faces first to end - 1, if there are any. object: its number, from 1; 0: none.
+ * In/out: used: [vertex_count], the `end` of the last call that used the vertex, or 0. */
 static bool add_faces(struct frames *frames, const struct robot_element *element, const char *path,
                       size_t object, const struct mesh *mesh, size_t first, size_t end,
                       size_t *used)
@@ -292,8 +292,8 @@ static size_t count_bytes(const struct frames *frames, size_t most)
     return bytes;
 }
 
-/* Reduces hulls of meshes so that the body fits into a message, if that is wanted and possible: to
- * the largest number of vertices that does it. */
+/* Reduces hulls of meshes so that the body fits into a message, if that is wanted and possible:
+ * each to the same number of vertices, the largest with which it fits. Records radii. */
 static enum fmb_status fit_body(struct frames *frames)
 {
     size_t most = FMB_HULL_VERTICES_MAX, found;

@@ -17,11 +17,11 @@ struct robot_body_options {
 
 /* What was done to the meshes of a robot. All 0: nothing. */
 struct robot_meshes {
-    size_t scaled;          /* the number of COLLADA meshes whose unit is not 1 m ... */
-    const char *first_file; /* ... and the first one */
+    size_t scaled;          /* number of COLLADA meshes whose unit is not 1 m */
+    const char *first_file; /* the first of these, and its unit in metres */
     double first_unit;
-    size_t rounded; /* the number of hulls that have a radius in place of vertices ... */
-    double excess;  /* ... and the largest radius */
+    size_t rounded; /* number of hulls that have a radius in place of vertices */
+    double excess;  /* the largest of these radii */
 };
 
 /* Makes the body of a link that has at least one collision element. If it has only one, the origin

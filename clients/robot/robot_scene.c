@@ -87,8 +87,8 @@ static bool carry(struct fmb_robot_scene *scene, const char *place,
     return true;
 }
 
-/* Adds the bodies of worlds that are carried, or those that are not. index: receives, for each body
- * of the worlds, its place. */
+/* Adds the bodies of worlds that are carried, or those that are not. index: receives the index of
+ * each body of the worlds in the scene. */
 static bool add_bodies(struct fmb_robot_scene *scene, const struct fmb_robot_world *worlds,
                        size_t count, bool carried, unsigned *index)
 {
@@ -120,7 +120,7 @@ static int by_id(const void *x, const void *y)
                           : (a->index > b->index) - (a->index < b->index);
 }
 
-/* Gives new ids, above all others, to bodies whose ids links or earlier bodies have. */
+/* Gives new ids, above all others, to bodies with the id of a link or of an earlier body. */
 static bool set_ids(struct fmb_robot_scene *scene)
 {
     const size_t count = scene->owner.scene.placement_count;
@@ -222,7 +222,8 @@ static void ignore_world(struct fmb_robot_scene *scene, const struct fmb_robot_w
     }
 }
 
-/* Adds the pairs of the robot, of what it carries, and of links without collisions by default. */
+/* Adds the pairs of the robot, those of carried bodies and their links, and those of other bodies
+ * and links whose collisions are disabled by default. */
 static void ignore_of_robot(struct fmb_robot_scene *scene)
 {
     const struct fmb_robot *robot = scene->robot;
@@ -355,8 +356,8 @@ size_t fmb_robot_moved(const struct fmb_robot_scene *scene)
 
 /* ---- Poses ---- */
 
-/* Sets the pose of a placement. Components of the quaternion so small that the engine refuses them,
- * far below rounding errors, become 0; no number is -0. */
+/* Sets the pose of a placement. Components of the quaternion that are so small that the engine
+ * refuses them become 0, which is far below rounding errors; no number is -0. */
 static void set_pose(const struct pose *pose, struct fmb_placement *out)
 {
     out->orientation_count = pose_is_translation(pose) ? 0 : 4;

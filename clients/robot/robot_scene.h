@@ -1,5 +1,5 @@
-/* A robot with its bodies, and scenes of it and of the bodies around it, which can be posed any
- * number of times: what fmb_robot.h declares, as structs. */
+/* The structs behind fmb_robot.h: a robot with its bodies, and scenes of a robot and the bodies
+ * around it, which can be posed any number of times. */
 #ifndef ROBOT_SCENE_H
 #define ROBOT_SCENE_H
 
@@ -47,14 +47,14 @@ struct fmb_robot {
     unsigned *body_of_link;       /* [link_count]; or ROBOT_NO_BODY */
     struct pose *origin;          /* [body_count], in the link */
     const char **link_names;      /* [body_count] */
-    unsigned *rigid; /* [body_count]: the first body of its rigid body, by fixed joints alone */
-    /* Ignored pairs, sorted; besides those of one rigid body, unless there is SRDF. */
+    unsigned *rigid; /* [body_count]: the first body of those that fixed joints connect to it */
+    /* Ignored pairs, sorted. Without SRDF, pairs within a rigid body are ignored too, by groups. */
     struct robot_pairs ignored;
     const char *srdf;           /* its path; NULL: none */
-    size_t unlisted;            /* neighbours and parts of a rigid body that the SRDF has not */
+    size_t unlisted;            /* pairs of neighbours that the SRDF does not list */
     bool *untested;             /* [body_count]: collisions are disabled by default; NULL: none */
-    struct robot_pairs enabled; /* pairs that are tested though */
-    struct robot_lines unknown; /* links of the SRDF that the robot has not, a line each */
+    struct robot_pairs enabled; /* pairs that are tested in spite of that */
+    struct robot_lines unknown; /* links of the SRDF that the robot does not have, a line each */
     size_t unknown_count;
     /* q. */
     size_t joint_count;
@@ -87,10 +87,10 @@ struct fmb_robot_scene {
     struct robot_lines errors, notes;
 };
 
-/* Sets the poses for values of all joints of the tree, as of robot_place(), and moves the bodies of
- * the world to where they are at this time, in seconds, if it is not 0. place: where the values are
- * given, for messages. Returns false after an error, which the scene has: a pose exceeds the range
- * of doubles. */
+/* Sets the poses for values of all joints of the tree, as in robot_place(), and moves the other
+ * bodies to where they are at this time, in seconds. place: where the values are given, for
+ * messages. Returns false after an error, which is added to the scene: the engine refuses a pose.
+ */
 bool robot_scene_place(struct fmb_robot_scene *scene, const double *value, double time,
                        const char *place);
 

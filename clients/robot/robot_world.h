@@ -20,11 +20,11 @@ bool robot_world_read(const char *path, const struct fmb_robot_options *options,
                       struct robot_world *out);
 void robot_world_clear(struct robot_world *world);
 
-/* Prints lines that are separated by line feeds on stderr, each after "PATH: "; "": after nothing.
- */
+/* Prints lines, which are separated by line feeds, on stderr, each with "PATH: " before it unless
+ * path is "". */
 void robot_world_print(const char *path, const char *text);
 
-/* Sets the group of the links of all robots among the worlds, which no other body has. */
+/* Gives the links of all robots among the worlds one group, which no other body has. */
 void robot_world_set_groups(struct robot_world *worlds, size_t count);
 
 #endif

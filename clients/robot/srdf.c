@@ -1,6 +1,6 @@
 /* Reads SRDF: which pairs of links are not tested. All else (<group>, <end_effector>, ...) is
- * ignored. As in MoveIt, <disable_collisions> counts before <enable_collisions>, and both before
- * <disable_default_collisions>, which is about all pairs of a link. */
+ * ignored. As in MoveIt, <disable_collisions> has precedence over <enable_collisions>, and both
+ * over <disable_default_collisions>, which disables all pairs of a link. */
 #include "robot_scene.h"
 #include "xml.h"
 
@@ -14,7 +14,7 @@ struct srdf {
     struct xml_reader xml;
     struct fmb_robot *robot;
     size_t known;                /* names of links that the robot has */
-    struct robot_name *unknown;  /* table of the others; entries belong to the tree */
+    struct robot_name *unknown;  /* table of other names; entries belong to the tree */
     struct robot_pairs disabled; /* pairs, sorted at the end */
 };
 
@@ -96,8 +96,7 @@ static bool add_defaults(struct srdf *srdf)
     return true;
 }
 
-/* Counts the neighbours and the parts of rigid bodies that are tested, since they are not listed.
- */
+/* Counts the neighbours that are tested, since the file does not disable them. */
 static size_t count_unlisted(const struct fmb_robot *robot, const struct robot_pairs *disabled)
 {
     size_t count = 0;

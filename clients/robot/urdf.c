@@ -31,7 +31,7 @@ static void read_sizes(struct xml_reader *reader, const struct xml_node *node, c
             xml_refuse(reader, node->line, "<%s>: %s is negative", node->name, name);
 }
 
-/* Reads a pose: xyz, and rpy or, in URDF 1.1, quat_xyzw, which is used as it is: of any length. */
+/* Reads a pose: xyz, and rpy or, in URDF 1.1, quat_xyzw, which may have any length. */
 static void read_origin(struct xml_reader *reader, const struct xml_node *parent, struct pose *out)
 {
     const struct xml_node *node = xml_find_child(reader, parent, "origin");

@@ -19,8 +19,8 @@ struct xml_reader {
     const char *path;
     struct xml_node document, *at; /* at: the open element */
     const char *kind, *within;     /* of robot_refuse(): what is being read */
-    /* Only the first error of an element is reported: until the caller sets failed to false, there
-     * is no other, and results are not used. bad: there was an error. */
+    /* Only the first error of an element is reported: further errors are dropped until the caller
+     * sets failed to false. Results are not used while it is true. bad: there was an error. */
     bool failed, bad;
     struct XML_ParserStruct *xml; /* private */
 };

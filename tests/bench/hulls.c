@@ -450,8 +450,8 @@ static void time_runs(const struct bench *bench, struct hulls *hulls, const int 
         out[k] = spread_of(times[k], blocks);
 }
 
-/* Whether a peer's answer contradicts the true one: in whether the two meet, or by more than far in
- * the gap. No answer is wrong too; touching is contact, but may have a gap of any sign. */
+/* Whether a peer's answer is wrong: about contact, or about the gap by more than far. A missing
+ * answer is wrong. Touching is contact, but its gap may have any sign. */
 static bool is_wrong_of_peer(double gap, const struct fmb_answer *truth, double far)
 {
     const double *bounds = truth->gap.bounds;
@@ -462,7 +462,7 @@ static bool is_wrong_of_peer(double gap, const struct fmb_answer *truth, double 
            !(gap >= bounds[0] - far && gap <= bounds[1] + far);
 }
 
-/* The same of the engine, whose enclosure of the gap may not exclude the true one. */
+/* The same for the engine, whose enclosure of the gap has to agree with the true one. */
 static bool is_wrong(const struct hulls *hulls, size_t i, int k)
 {
     const struct fmb_answer *truth = &hulls->truth[i];
@@ -494,7 +494,7 @@ static double touching_of(const struct hulls *hulls)
 
 /* ---- Tables ---- */
 
-/* far: a gap that is off by more is wrong. */
+/* far: the largest error of a gap that counts as right. */
 static void row(struct bench *bench, const struct kind *kind, const struct contact *contact,
                 double far)
 {

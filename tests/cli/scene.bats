@@ -214,7 +214,7 @@ EOF
     link "<collision><geometry><mesh filename='m.dae' scale='1 1 2'/></geometry></collision>"
 }
 
-@test "COLLADA is the same scene as an STL of its placed triangles; its unit is applied, and reported, its up axis is not" {
+@test "COLLADA gives the same scene as STL of its placed triangles; its unit is applied and reported, its up axis is not applied" {
     unit="; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: 0.25 m in m.dae, files: 1"
     for placed in '<node><instance_geometry url="#g"/></node>||0 0 0,1 0 0,0 1 0,0 0 1' \
         '<node><instance_geometry url="#g"/></node>|<unit meter="0.25" name="q"/>|0 0 0,0.25 0 0,0 0.25 0,0 0 0.25' \
@@ -349,7 +349,7 @@ print(len(vertices), "%.6f" % float(most) ** 0.5)
 EOF
 }
 
-@test "a hull of too many vertices has fewer and a radius, which contains all, and is no larger than it has to be" {
+@test "a hull of too many vertices gets fewer and a radius, with which it contains all points; the radius is no larger than needed" {
     /usr/bin/python3 -c 'import numpy' 2> /dev/null || skip "needs python3-numpy"
     sphere 3000
     scene robot.urdf
@@ -370,7 +370,7 @@ EOF
     is $'1024\n1024'
 }
 
-@test "hulls of a body that does not fit into a message have fewer vertices, as many as do" {
+@test "hulls of a body that does not fit into a message get as many vertices as fit" {
     { for i in 1 2 3; do echo "o $i"; awk 'BEGIN { for (i = 0; i < 1000; i++) print "v", i, i * i, 0; for (i = 3; i <= 1000; i++) print "f -1000 -999 -" i - 2 }'; done; } > m.obj
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
     scene robot.urdf --objects
@@ -383,7 +383,7 @@ EOF
     [[ $stderr == *' bytes in a message, which has space for 63500: simplify its meshes, or give fewer --sides' ]]
 }
 
-@test "--excess is what a hull may extend beyond its mesh, with as few vertices as that takes" {
+@test "--excess bounds how far a hull extends beyond its mesh, and saves vertices" {
     /usr/bin/python3 -c 'import numpy' 2> /dev/null || skip "needs python3-numpy"
     sphere 500
     scene robot.urdf
@@ -653,7 +653,7 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     wrong scene robot.urdf --ignore arm
 }
 
-@test "worlds are scenes and robots: links of these are obstacles of one group, at home" {
+@test "--with takes scenes and robots; links of robots are obstacles of one group, in their home pose" {
     cube='"shape": "box", "size": [1,1,1]'
     echo "{\"dim\": 3, \"duration\": 2, \"margin\": 0.5, \"bodies\": [{\"id\": 9, \"name\": \"x\", $cube, \"group\": 5}]}" > a.json
     echo "{\"dim\": 3, \"duration\": 1, \"margin\": 0.75, \"bodies\": [{\"id\": 9, \"name\": \"y\", $cube, \"velocity\": [1,0,0]}], \"ignore\": []}" > b.json
@@ -712,10 +712,10 @@ fmb: bad.json: body 9, c: a body that a link carries has no velocity of its own"
     refused 'bad.json: bodies[0].link: expected a string' robot.urdf --with bad.json
     run --separate-stderr "$FMB" query --local world.json
     ended 2
-    said 'fmb: world.json: bodies[1].link: only a scene that is added to a robot has links'
+    said 'fmb: world.json: bodies[1].link: only bodies that are added to a robot may have it (fmb scene --with)'
 }
 
-@test "--base is where the robot stands, as an origin of its root would be" {
+@test "--base places the robot as an origin of its root would" {
     robot "<link name='world'/><joint name='mount' type='fixed'><origin xyz='1 2 3' rpy='0.1 0.2 0.3'/><parent link='world'/><child link='base'/></joint>
         $(sed '1,2d;$d' robot.urdf)"
     scene robot.urdf --joints turn=1,slide=0.5
@@ -747,7 +747,7 @@ e continuous palm right
 f fixed left tip')"
 }
 
-@test "links that fixed joints alone connect are of one group, which no body of the world has" {
+@test "links that fixed joints alone connect have one group, which no body of the world has" {
     hand
     scene robot.urdf
     says 'pairs tested: 9, ignored: 6: 2 neighbours, 4 joined rigidly'
@@ -783,16 +783,16 @@ f fixed left tip')"
     says 'ignored: 8: 1 by the SRDF, 5 by its defaults, 1 carried, 1 by --ignore; tested neighbours that the SRDF does not list: 5'
     shows '.ignore'
     is '[[1,7],[2,5],[3,5],[4,5],[4,8],[5,6],[5,8],[5,7]]'
-    # Links that the robot has not.
+    # Links that the robot does not have.
     srdf "$(disable palm thumb)$(disable thumb wrist)$(disable left palm)<disable_default_collisions link='x&#10;y'/>"
     scene robot.urdf --srdf robot.srdf
-    says 'links of the SRDF that the robot has not: 3 (thumb, wrist, x\x0ay)'
+    says 'links of the SRDF that the robot does not have: 3 (thumb, wrist, x\x0ay)'
     scene robot.urdf --srdf robot.srdf --verbose
     grep -qx 'fmb: the robot has no link: wrist' <<< "$stderr"
     srdf "$(for i in 0 1 2 3 4 5 6 7 8; do disable "l$i" palm; done)"
     scene robot.urdf --srdf robot.srdf
     says '9 (l0, l1, l2, l3, l4, l5, l6, l7, ...)'
-    # No pair at all is a file as good as others.
+    # A file without pairs is valid.
     srdf ''
     scene robot.urdf --srdf robot.srdf
     says 'pairs tested: 15, ignored: 0; tested neighbours that the SRDF does not list: 5'
@@ -812,7 +812,7 @@ f fixed left tip')"
     of '<robot>' 'line 2: XML: no element found: the file ends too early'
     of '<!DOCTYPE robot [<!ENTITY e "palm">]><robot><disable_collisions link1="&e;" link2="left"/></robot>' 'line 1: <!DOCTYPE>: document types and entities are not supported: remove the declaration'
     refused 'none.srdf: No such file' robot.urdf --srdf none.srdf
-    # With all that is wrong with the robot itself.
+    # Together with the errors of the robot itself.
     echo "<robot><disable_collisions link1='palm'/></robot>" > robot.srdf
     sed -i "s/name='e' type='continuous'/name='e' type='floating'/; s/parent link='left'/parent link='thumb'/" robot.urdf
     scene robot.urdf --srdf robot.srdf
@@ -849,7 +849,7 @@ f fixed left tip')"
     is $'null\n[false,true,true,true]'
 }
 
-@test "columns of fixed joints and of none are ignored and counted; one of a mimic joint wins, with the largest difference" {
+@test "columns of fixed joints or of unknown names are ignored and counted; a column of a mimic joint is used, and the largest difference reported" {
     sed -i "s|child link='tool'/>|&<mimic joint='turn' multiplier='2'/>|; s|</robot>|<link name='end'/><joint name='weld' type='fixed'><parent link='tool'/><child link='end'/></joint></robot>|" robot.urdf
     printf '%s\n' 'weld,time,turn,slide,effort,mode' 'x,0,0.25,0.5,NaN,a' ',1,0.5,1.25,,b' '0,2,0.5,0.875,1,c' > t.csv
     scene robot.urdf --joints-csv t.csv
@@ -860,7 +860,7 @@ f fixed left tip')"
     says "fmb: joints: mimic 'slide' differs from what it follows by up to 0.125"
 }
 
-@test "a package is the nearest folder above the robot that has its name, or whose package.xml has" {
+@test "a package is the nearest folder above the robot that has its name, or whose package.xml has that name" {
     mkdir -p ws/arm/robots ws/arm/arm/meshes ws/arm/meshes other/meshes
     printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' > ws/arm/meshes/m.obj
     echo 'f 1 2 3' >> ws/arm/meshes/m.obj
@@ -900,7 +900,7 @@ f fixed left tip')"
     is 1
 }
 
-@test "all that is refused of a robot is named at once, at most 100 errors" {
+@test "all errors of a robot are reported at once, at most 100" {
     robot "<link name='a'>$box<collision><geometry><cone/></geometry></collision><collision/>
 <collision><geometry><mesh filename='none.stl'/></geometry></collision></link>
 <link name='a'/><link/>
@@ -1147,7 +1147,7 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     limited
 }
 
-@test "COLLADA neither expands, repeats itself, nor takes a gigabyte" {
+@test "COLLADA files cannot expand entities, repeat nodes without limit, or take a gigabyte" {
     # limited TEXT: m.dae is refused, within 5 s and 512 MB.
     limited() {
         # shellcheck disable=SC2016
