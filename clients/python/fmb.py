@@ -627,8 +627,8 @@ def _rows(value: Any) -> Any:
 
 @functools.lru_cache(maxsize=None)
 def _columns(dim: int, pairs: bool, wanted: int) -> tuple[dict[str, Any], int]:
-    """The columns of fmb_flat_pack(): the place, in bytes of an answer, and type and shape of what is wanted,
-    else None; and the bytes of an answer."""
+    """The columns of fmb_flat_pack(), and the bytes of an answer. A column is its offset, in bytes per answer,
+    its type and its shape; None if it is not wanted."""
     contact, corners, point, gap = (
         wanted & bit for bit in (_WANT_TIMES, _WANT_BOX, _WANT_POINT, _WANT_GAP))
     columns: dict[str, Any] = {}
@@ -665,7 +665,7 @@ class Answers(Sequence):
     def __init__(self, handle: int, count: int, dim: int, names: Any, pairs: Any, wanted: int) -> None:
         self._names, self._pairs, self._count = names, pairs, count
         self._columns, width = _columns(dim, pairs is None, wanted)
-        self._data = (ctypes.c_char * ((count or 1) * width))()  # of all columns; each becomes an array when it is used
+        self._data = (ctypes.c_char * ((count or 1) * width))()  # all columns; each becomes an array when it is used
         if count:
             _lib.fmb_flat_pack(handle, self._data)
 
@@ -836,9 +836,9 @@ class Scene(_Handle):
 
     @staticmethod
     def from_json(path: Union[str, os.PathLike]) -> Scene:
-        """Reads the only scene of a JSON file, with its ignored pairs. It may be one around a robot: links
-        has the name of the link that carries a body, or None. duration and margin are those of the file;
-        they are not used by decide(), but the margin is that of a robot's scene.
+        """Reads the only scene of a JSON file, with its ignored pairs. Its bodies may be carried by links of
+        a robot: links has the name of the link for each body, or None. duration and margin are those of the
+        file. decide() does not use them; Robot.scene() passes them on.
 
         Raises ValueError for a file that is refused.
         """
@@ -929,7 +929,7 @@ class Scene(_Handle):
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
             _WANT_POINT if points else 0) + (_WANT_GAP if gaps else 0)
         if pairs is None and split is None and ignored is None and label is None and client is None:
-            with self._lock:  # the way of most scenes, with few calls; what is refused is so below
+            with self._lock:  # the common case, with few calls; errors are raised below
                 try:
                     count = _lib.fmb_flat_decide_all(self._handle, duration, bool(instant), want, margin)
                 except ctypes.ArgumentError:
@@ -987,7 +987,7 @@ def _path(name: str, value: Any) -> Optional[bytes]:
 
 
 class _Made(_Handle):
-    """An object of libfmb-robot: kind + make is the function that makes it, of these arguments."""
+    """An object of libfmb-robot, made by the function kind + make with these arguments."""
 
     def __init__(self, kind: str, make: str, *arguments: Any, keeps: Any = None) -> None:
         self._lib = lib = _robots()
@@ -1003,7 +1003,8 @@ class _Made(_Handle):
 
 
 def _scene_of(of: Any, owner: _Made, bodies: list[Body], **more: Any) -> Scene:
-    """A Scene of a struct fmb_scene. bodies: of the last placements; the owner has the others. more: attributes."""
+    """Makes a Scene from a struct fmb_scene. bodies: of the last placements; the owner has the others. more:
+    attributes."""
     placed = of.placements[:of.placement_count]
     owned = [p.body.contents for p in placed[:len(placed) - len(bodies)]]
     scene = Scene([Body(body.dim, ctypes.addressof(body), owner, False) for body in owned] + bodies,
@@ -1020,21 +1021,22 @@ class Robot(_Handle):
     """A robot of a URDF file, with a body for each link that has collision elements.
 
     path: of the file; "-" is standard input
-    srdf: path of an SRDF file, whose pairs are ignored in place of neighbours and rigid bodies
+    srdf: path of an SRDF file: the pairs that it disables are ignored, in place of neighbours and of
+        pairs within a rigid body
     package_path: folders of packages, separated by colons
     ignore: pairs of names, of links or of bodies of the world, that are not tested
-    base: where the root is: x, y, z, or x, y, z, roll, pitch, yaw
+    base: the pose of the root: x, y, z, or x, y, z, roll, pitch, yaw
     sides: of the hulls of cylinders, a multiple of 4 up to 512
-    excess: how far hulls may extend beyond meshes, so that they have fewer vertices
+    excess: how far hulls may extend beyond meshes, so that they need fewer vertices
     objects: a hull for each object of an OBJ file
 
     joints: names of the joints that move and follow no other, in the order of q
     lower, upper, home: (len(joints),), of q: limits, infinite if there are none; and 0, or the middle of
         the limits if 0 is outside. Radians, or lengths of prismatic joints
     links: names of the links that have a body, in the order of a scene
-    excess: how far bodies extend beyond the cylinders and meshes of the file at most
+    excess: the largest distance by which bodies may extend beyond the cylinders and meshes of the file
 
-    Raises Error with all that is wrong with the files, a line each; ImportError without libfmb-robot.
+    Raises Error with all errors of the files, one a line; ImportError without libfmb-robot.
     """
 
     def __init__(self, path: Union[str, os.PathLike], srdf: Union[str, os.PathLike, None] = None,
@@ -1072,12 +1074,12 @@ class Robot(_Handle):
         self._handle = made._handle
 
     def scene(self, world: Optional[Scene] = None) -> Scene:
-        """A scene of the robot at home: first the bodies of the links, in the order of links; then those
-        of the world that links carry; then the others. Its ignored pairs are those of the robot and of the
-        world. Links have the ids from 1 on; bodies of the world with one of these get others. Parts of one
-        rigid body have a group.
+        """Returns a scene of the robot in its home pose: first the bodies of the links, in the order of
+        links; then the bodies of the world that links carry; then its other bodies. Its ignored pairs are
+        those of the robot and of the world. Links have the ids from 1 on; bodies of the world with one of
+        these get others. Without SRDF, the links of a rigid body have one group.
 
-        world: a Scene in 3D, as it is now; of a JSON file with links, see Scene.from_json()
+        world: a Scene in 3D, in its current poses; Scene.from_json() reads one with carried bodies
         """
         around, bodies = None, []
         if world is not None:
@@ -1097,9 +1099,9 @@ class Robot(_Handle):
                                  self._lib.fmb_robot_moved(made._handle)))
 
     def place(self, scene: Scene, q: Array) -> None:
-        """Poses the links and what they carry; all else in the scene stays where it is.
+        """Poses the links and the bodies that they carry. Other bodies of the scene keep their poses.
 
-        scene: of scene()
+        scene: made by scene() of this robot
         q: (len(joints),), finite values of the joints; limits are not checked
         """
         robot, made, values, placements, moved = getattr(scene, "_robot", None) or 5 * (None,)

@@ -105,11 +105,11 @@ struct fmb_flat_scene {
     char *names;
     struct fmb_prepared *prepared;
     struct column listed, ignored; /* unsigned [][2]: indices of placements */
-    struct column own;             /* the same: pairs that are always ignored */
+    struct column own;             /* likewise: the pairs of fmb_flat_scene_ignore() */
     size_t own_count;
     struct column memory; /* bytes: of a struct fmb_scene_state */
-    /* The scene that was decided in memory, if it can be begun again; and how many of the first
-     * placements have moved since. */
+    /* The scene that was decided in `memory`, if it can be begun again, else NULL; and the number
+     * of first placements that contain all that have moved since. */
     struct fmb_scene_state *state;
     struct fmb_scene begun;
     size_t moved;
@@ -350,7 +350,7 @@ static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *sce
                                                       .gaps = column_if(flat, GAPS)});
 }
 
-/* Whether the scene was decided last, and differs in no more than poses. */
+/* Whether the scene was decided last, and differs at most in its first placements. */
 static bool is_again(const struct fmb_flat_scene *flat, const struct fmb_scene *scene)
 {
     const struct fmb_scene *begun = &flat->begun;
@@ -475,7 +475,7 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
     return scene->failed ? refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0) : answer.status;
 }
 
-/* Sets the ignored pairs to the scene's own, and more. */
+/* Sets `ignored` to the given pairs and those of the scene. */
 static int convert_ignored(struct fmb_flat_scene *flat, size_t own, const int64_t *pairs,
                            size_t count)
 {
@@ -530,7 +530,7 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                                     .label = label};
     if (client)
         return decide_on_bus(flat, client, &scene);
-    if (!is_again(flat, &scene)) /* else placements are checked one by one */
+    if (!is_again(flat, &scene)) /* otherwise fmb_scene_again() checks those that moved */
         status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
     if (status == FMB_OK) {
         status = pairs && flat->single && margin == 0 ? decide_batch(flat, &scene)

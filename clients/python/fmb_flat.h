@@ -70,8 +70,8 @@ int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, cons
                         struct fmb_flat_scene **out);
 void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
 
-/* Sets the pairs of a scene that fmb_flat_decide() ignores whenever it decides no list; called
- * once.
+/* Sets the pairs of a scene that fmb_flat_decide() ignores unless it is given a list of pairs. May
+ * be called once.
  * In:  pairs  [count][2]
  * Returns FMB_OK, FMB_BAD_PAIR or NO_MEMORY. */
 int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, size_t count);
@@ -79,8 +79,8 @@ int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, si
 /* Returns the placements. */
 const struct fmb_placement *fmb_flat_placements(const struct fmb_flat_scene *scene);
 
-/* Copies the poses of the first count elements of such an array, of valid poses, to those of the
- * scene. */
+/* Copies the poses of the first count elements of such an array to the placements of the scene.
+ * They must be valid. */
 void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *placements,
                    size_t count);
 
@@ -111,8 +111,8 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
 
 /* Decides pairs, and keeps the answers in the scene until the next call: of each pair of a list;
  * otherwise of those that touch, overlap, are near, or have no verdict. In process, if only the
- * first placements have moved since the last call and all else is equal, what the others need is
- * kept (fmb_scene_again()).
+ * first placements have changed since the last call, the preparation of the others is reused
+ * (fmb_scene_again()).
  * In:  client   NULL: in process; or as fmb_client_query()
  *      instant  not 0: the window is [0, 0] even if bodies move
  *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX, FMB_WANT_POINT and FMB_WANT_GAP
@@ -127,28 +127,23 @@ int fmb_flat_decide(struct fmb_flat_scene *scene, struct fmb_client *client, dou
                     size_t pair_count, const int64_t *ignored, size_t ignored_count,
                     const char *label);
 
-/* As fmb_flat_decide() of all pairs, in process, without a label; but returns the number of
- * answers, or -1 after an error, whose status fmb_flat_decide() returns. */
+/* As fmb_flat_decide() of all pairs, in process, without a label. Returns the number of answers; -1
+ * after an error, for whose status fmb_flat_decide() has to be called. */
 int64_t fmb_flat_decide_all(struct fmb_flat_scene *scene, double duration, int instant,
                             unsigned want, double margin);
 
 /* Returns the number of answers that the scene keeps. */
 size_t fmb_flat_count(const struct fmb_flat_scene *scene);
 
-/* Copies the answers, n of them, to one memory, which is aligned for doubles: those of the arrays
- * below that were wanted, without spaces. There are gaps, too, if the margin is not 0.
- *     pairs       int64 [n][a, b]; not of a list, nor of fmb_flat_pair()
- *     contacts    double [n][first, last], NAN unless they meet
- *     boxes       double [n][lower, upper][dim], NAN unless they meet
- *     points      double [n][time, coordinates], NAN unless they meet
- *     gaps        double [n][lower, upper bound], NAN if there is none; the next four are then
- *                 undefined
- *     directions  double [n][dim]
- *     times       double [n], NAN unless there are witness points
- *     witnesses   double [n][of a, of b][dim], NAN where there are none
- *     frames      int64 [n][of a, of b], indices of the frames that have this gap
- *     statuses    int32 [n], FMB_OK, or why there is no verdict
- *     verdicts    uint8 [n], enum fmb_verdict; 0: none */
+/* Copies the n answers to data, which is aligned for doubles: the arrays below that were wanted,
+ * one directly after the other. There are gaps, too, if the margin is not 0. pairs       int64
+ * [n][a, b]; not of a list, nor of fmb_flat_pair() contacts    double [n][first, last], NAN unless
+ * they meet boxes       double [n][lower, upper][dim], NAN unless they meet points      double
+ * [n][time, coordinates], NAN unless they meet gaps        double [n][lower, upper bound], NAN if
+ * there is none; the next four are then undefined directions  double [n][dim] times       double
+ * [n], NAN unless there are witness points witnesses   double [n][of a, of b][dim], NAN where there
+ * are none frames      int64 [n][of a, of b], indices of the frames that have this gap statuses
+ * int32 [n], FMB_OK, or why there is no verdict verdicts    uint8 [n], enum fmb_verdict; 0: none */
 void fmb_flat_pack(const struct fmb_flat_scene *scene, void *data);
 
 /* ---- The bus ---- */

@@ -97,7 +97,7 @@ struct fmb_robot_world {
     const char *name; /* for messages, such as the name of a file; NULL: none */
 };
 
-/* Bodies of a file. */
+/* A scene that was read from a file. */
 struct fmb_robot_json;
 
 /* Reads the only scene of a JSON file, whose bodies may have a "link".

@@ -803,7 +803,7 @@ class Robots(unittest.TestCase):
                 self.assertEqual(list(scene.decide(0.7, **WANTED)), list(expected))
         self.refused(fmb.Error, "none.json: No such file", lambda: fmb.Scene.from_json("none.json"))
         path = self.file("s.json", '{"dim": 3, "bodies": [], "pairs": []}')
-        self.refused(fmb.Error, f"{path}: pairs: they are an argument", lambda: fmb.Scene.from_json(path))
+        self.refused(fmb.Error, f"{path}: \"pairs\" is not supported", lambda: fmb.Scene.from_json(path))
         path = self.file("s.json", '{"dim": 4, "bodies": []}')
         self.refused(fmb.Error, f"{path}: dim: expected 2 or 3", lambda: fmb.Scene.from_json(path))
         self.refused(TypeError, "path: expected a path", lambda: fmb.Scene.from_json(3))
