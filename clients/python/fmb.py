@@ -846,7 +846,7 @@ class Scene(_Handle):
         world = made._lib.fmb_robot_json_get(made._handle).contents
         of = world.scene.contents
         if of.which:
-            raise Error(f"{path}: pairs: they are an argument of decide()")
+            raise Error(f"{path}: \"pairs\" is not supported in a file: pass pairs to decide()")
         links = [link and link.decode() for link in world.links[:of.placement_count]] if world.links else ()
         return _scene_of(of, made, [], duration=of.duration, **{"links": tuple(links)} if links else {})
 

@@ -101,8 +101,8 @@ struct fmb_robot_world {
 struct fmb_robot_json;
 
 /* Reads the only scene of a JSON file, whose bodies may have a "link".
- * Out: *out  set in any case, for fmb_robot_json_why(); to be freed after the scenes with its
- * bodies Returns 0; or -1 after an error. */
+ * Out: *out  set in any case, for fmb_robot_json_why(); to be freed after scenes of its bodies
+ * Returns 0; or -1 after an error. */
 int fmb_robot_json_read(const char *path, struct fmb_robot_json **out);
 void fmb_robot_json_free(struct fmb_robot_json *json); /* may be NULL */
 const char *fmb_robot_json_why(const struct fmb_robot_json *json);
