@@ -9,14 +9,15 @@ double work_of_scene_step(const struct fmb_placement placements[2], double durat
                           work_so_far *work, int *steps)
 {
     static const unsigned pairs[1][2] = {{0, 1}};
-    const struct fmb_scene scene = {.placements = placements,
-                                    .placement_count = 2,
-                                    .duration = duration,
-                                    .instant = duration == 0,
-                                    .which = FMB_PAIRS_LISTED,
-                                    .pairs = pairs,
-                                    .pair_count = 1,
-                                    .want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP};
+    const struct fmb_scene scene = {
+        .placements = placements,
+        .placement_count = 2,
+        .duration = duration,
+        .instant = duration == 0,
+        .which = FMB_PAIRS_LISTED,
+        .pairs = pairs,
+        .pair_count = 1,
+        .want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT};
     struct fmb_scene_limits limits;
     struct fmb_scene_state *state;
     struct fmb_scene_answers answers;
