@@ -107,6 +107,7 @@ static void draw_two(struct draw *draw, size_t count, unsigned out[2])
 
 static void draw_world(struct draw *draw, size_t count, size_t most_frames, struct world *out)
 {
+    static unsigned worlds; /* so far */
     memset(out, 0, sizeof *out);
     out->dim = 2 + below(draw, 2);
     out->count = count;
@@ -117,8 +118,8 @@ static void draw_world(struct draw *draw, size_t count, size_t most_frames, stru
         .placement_count = count,
         .duration = below(draw, 3),
         .want = (unsigned) (below(draw, 2) * FMB_WANT_TIMES + below(draw, 2) * FMB_WANT_BOX +
-                            (below(draw, 3) == 0) * FMB_WANT_GAP +
-                            (below(draw, 3) == 0) * FMB_WANT_POINT),
+                            (below(draw, 3) == 0) * FMB_WANT_GAP) |
+                (worlds++ % 3 == 0 ? FMB_WANT_POINT : 0),
         .margin = below(draw, 3) ? 0 : 0.25 * below(draw, 12),
         .which = (enum fmb_pairs) below(draw, 3)};
     if (scene->which == FMB_PAIRS_ACROSS)

@@ -500,10 +500,14 @@ static void an_end_beyond_the_doubles_is_infinite(void **state)
 
 /* ---- Distance and depth ---- */
 
+/* The deepest pair is the vertex (1, 1) of the first body, and a point of an edge of the other. */
 static bool depth_is(const struct pair *pair, double lower, double upper, double x, double y)
 {
     char why[200];
-    const struct fmb_gap gap = {.bounds = {lower, upper}, .direction = {x, y}};
+    const struct fmb_gap gap = {.bounds = {lower, upper},
+                                .direction = {x, y},
+                                .has_witness = true,
+                                .witness = {{1, 1}, {0.2, 0.6}}};
     return gap_check(pair, FMB_OVERLAPPING, &gap, why, sizeof why);
 }
 

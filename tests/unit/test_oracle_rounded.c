@@ -336,7 +336,7 @@ static void gaps_of_what_overlaps(void **state)
                                       .witness = {{6, 1, 1}, {6 - depth, 1, 1}}};
         assert_true(holds(&posed.pair, FMB_OVERLAPPING, &right));
         const struct fmb_gap pointless = WITH(gap.has_witness = false);
-        assert_true(holds(&posed.pair, FMB_OVERLAPPING, &pointless));
+        assert_false(holds(&posed.pair, FMB_OVERLAPPING, &pointless));
         const struct fmb_gap wrong[] = {
             WITH(gap.bounds[0] = -depth + 0x1p-45),
             WITH(gap.bounds[1] = -depth - 0x1p-45),
@@ -353,7 +353,10 @@ static void gaps_of_what_overlaps(void **state)
     const struct question corner = {
         {CUBE, {0}, STILL, .radius = 3}, {BALL, {3, 4, 7}, STILL, .radius = 5}, 1};
     const struct fmb_gap right = {.bounds = {-1 - 0x1p-44, -1 + 0x1p-44},
-                                  .direction = {2. / 7, 3. / 7, 6. / 7}};
+                                  .direction = {2. / 7, 3. / 7, 6. / 7},
+                                  .has_witness = true,
+                                  .witness = {{1 + 6. / 7, 1 + 9. / 7, 1 + 18. / 7},
+                                              {3 - 10. / 7, 4 - 15. / 7, 7 - 30. / 7}}};
     const struct fmb_gap low = WITH(gap.bounds[0] -= 0x1p-42; gap.bounds[1] -= 0x1p-42);
     const struct fmb_gap high = WITH(gap.bounds[0] += 0x1p-42; gap.bounds[1] += 0x1p-42);
     place(&corner, &posed);
@@ -541,7 +544,10 @@ static void bodies_of_frames(void **state)
     /* The ball's centre in the middle of the cube: a gap of -5.5. That of the other frame is 0. */
     for (int axis = 0; axis < 3; axis++)
         frames[0].origin[axis] = 0.5;
-    const struct fmb_gap least = {.bounds = {-5.5, -5.5}, .direction = {0, -1, 0}};
+    const struct fmb_gap least = {.bounds = {-5.5, -5.5},
+                                  .direction = {0, -1, 0},
+                                  .has_witness = true,
+                                  .witness = {{0.5, 0, 0.5}, {0.5, 5.5, 0.5}}};
     const struct fmb_gap other = {.bounds = {-5.25, -5.25}, .direction = {1, 0, 0}};
     assert_true(holds(&pair, FMB_OVERLAPPING, &least));
     assert_false(holds(&pair, FMB_OVERLAPPING, &other));
