@@ -13,10 +13,13 @@
 
 /* ---- Pairs ---- */
 
-/* Where A's point farthest along a direction and B's farthest against it are so far apart that far
- * along it: this is the distance, or at least the depth. Frames with a radius overlap by at most
- * half of it. Random directions, or, of a pair with one radius, the normal of a face; or no
- * orientations, and multiples of 2^-20, so that they touch exactly; or a face on a face. */
+/* Where the solids of a pair are: B's point farthest against a direction is opposite to A's point
+ * farthest along it, `gap` away. A positive gap is the distance; a negative one is an upper bound
+ * of the depth. With radii, it is at least minus half of their sum.
+ *
+ *   ANY     a random direction; of a pair with one radius, half of the time the normal of a face
+ *   EXACT   without orientations, in multiples of 2^-20, so that a gap of 0 is exact
+ *   TILTED  a face on a face */
 enum place { ANY, EXACT, TILTED };
 
 struct contact {

@@ -45,8 +45,8 @@ static double ns_spent(void)
 static double decide_all(struct batch *batch, int method, int mode)
 {
     const struct fmb_method *chosen = fmb_method_at((size_t) method);
-    const unsigned rest = chosen->certain ? FMB_WANT_GAP | FMB_WANT_POINT : 0;
-    const unsigned wants[ASKINGS] = {FMB_WANT_BOX, FMB_WANT_BOX | rest, 0, rest};
+    const unsigned more = chosen->certain ? FMB_WANT_GAP | FMB_WANT_POINT : 0;
+    const unsigned wants[ASKINGS] = {FMB_WANT_BOX, FMB_WANT_BOX | more, 0, more};
     struct reply *reply = batch->reply[method][mode];
     const double start = ns_spent();
     for (int i = 0; i < batch->count; i++)
@@ -74,10 +74,10 @@ static void check_promises(struct tally *tally, const struct fmb_method *method,
         tally_broken(tally, &trial->question, "another verdict without the box");
 }
 
-/* The same of points and gaps: in either order, with a box or without, the same bits; and proven.
+/* The same for gaps and points: the same bits in either order, with a box or without; and proven.
  */
-static void check_rest(struct tally *tally, enum fmb_verdict verdict, const struct trial *trial,
-                       const struct reply *reply[ASKINGS])
+static void check_gap_and_point(struct tally *tally, enum fmb_verdict verdict,
+                                const struct trial *trial, const struct reply *reply[ASKINGS])
 {
     const struct fmb_answer *answer = &reply[GAP]->answer, *swapped = &reply[SWAPPED]->answer;
     char why[TALLY_WHY_MAX];
@@ -87,7 +87,7 @@ static void check_rest(struct tally *tally, enum fmb_verdict verdict, const stru
         tally_broken(tally, &trial->question, "no gap");
     else if (answer->has_point != (verdict != FMB_SEPARATED) ||
              answer->has_point != swapped->has_point)
-        tally_broken(tally, &trial->question, "a point, or none");
+        tally_broken(tally, &trial->question, "a point of a separated pair, or none of a contact");
     else if (memcmp(answer->point, swapped->point, sizeof answer->point) != 0)
         tally_broken(tally, &trial->question, "another point in the other order");
     else if (!gap_check_swapped(question_is_symmetric(&trial->question), &answer->gap,
@@ -141,7 +141,7 @@ static void judge_pair(struct measure *measure, const struct batch *batch, int i
         if (!trial_never_wrong(method))
             continue;
         check_promises(tally, method, truth, trial, reply);
-        check_rest(tally, truth->verdict, trial, reply);
+        check_gap_and_point(tally, truth->verdict, trial, reply);
     }
 }
 

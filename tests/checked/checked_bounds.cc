@@ -466,9 +466,9 @@ bool check_failed(int index)
 static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
-    "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), depths of hulls\n"
-    "(support_depth.c), and what is done in integers. In the filter and in gaps frames count\n"
-    "as given, without errors.\n";
+    "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), points of contact\n"
+    "(BOXES.md, 12; support_gap.c), depths of hulls (support_depth.c), and what is done in\n"
+    "integers. In the filter and in gaps frames count as given, without errors.\n";
 
 /* A fraction of a constant. */
 static void print_share(FILE *out, long double share)

@@ -76,7 +76,7 @@ rows() {
     done
 }
 
-# As a service may give: a pair that overlaps has witness points too, a deepest pair.
+# Bodies that overlap and do not move relative to each other have a deepest pair of points.
 @test "witness points of bodies that overlap are printed and compared" {
     generate --blast pairs 100 --dim 3 --static --gap "$T/apart.log"
     n=$("$FMB" log results --json --all "$T/apart.log" | jq -s 'map(.pairs[0].verdict == "overlapping") | index(true)')

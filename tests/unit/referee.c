@@ -88,7 +88,7 @@ static void assert_truth(const struct never_wrong *method, const struct question
     char why[200];
     decide(method, question, pair, FMB_WANT_BOX | FMB_WANT_POINT, answer);
     if (answer->has_point != truth->has_contact)
-        fail_of(method, question, "a point, or none");
+        fail_of(method, question, "a point of a separated pair, or none of a contact");
     if (!oracle_agrees(truth, pair, answer, method->limit, why, sizeof why))
         fail_of(method, question, why);
 }

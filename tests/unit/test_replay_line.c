@@ -86,7 +86,7 @@ static void every_number_of_a_gap_has_its_name(void **state)
            "bodies 3 7  gap upper bound: -0.25, now 0 (+0.25), and 5 more numbers\n");
 }
 
-/* No number of them is compared with 0. */
+/* Numbers of witness points that one answer lacks are not compared with 0. */
 static void witness_points_that_one_answer_lacks_are_named(void **state)
 {
     now->gap.has_witness = true;
