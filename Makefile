@@ -267,7 +267,7 @@ $(B)/libfmb.a: $(engine_objects)
 	$(call library,fmb_*)
 $(B)/libfmb-client.a: $(client_objects) $(wire_objects)
 	$(call library,fmb_client_* fmb_flat_*)
-# Of the other folders the linker takes what these objects need.
+# From the other folders, the linker takes only what these objects need.
 $(B)/libfmb-robot.a: $(filter-out %/joints.o,$(call objects_in,clients/robot)) $(product)
 	$(call library,fmb_robot_*)
 

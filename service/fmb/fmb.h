@@ -395,9 +395,10 @@ struct fmb_gap {
  * the point, both bodies contain a point that differs from it on each axis by at most 1e-12 of the
  * largest such magnitude. A coordinate beyond the largest double is infinite, with its sign. For
  * frames that are neither hulls nor rounded, if doubles suffice, the point is near the middle of
- * the intersection over the window: it is the mean of the middles of the parts of edges, and of
- * paths of vertices, of each frame that are within the other, and of the points where edges cross.
- * For bodies of several frames, it belongs to a pair of frames that has the verdict of the bodies.
+ * the intersection over the window: of axis-aligned cuboids at rest it is the centre; of others the
+ * mean of the middles of the parts of edges, and of paths of vertices, of each frame that are
+ * within the other, and of the points where edges cross. For bodies of several frames, it belongs
+ * to a pair of frames that has the verdict of the bodies.
  *
  * Both methods give the same bits for the swapped pair and on every machine; another version of the
  * library may give different bits within these limits. An end of a box whose magnitude exceeds the
