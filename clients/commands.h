@@ -9,6 +9,7 @@ int cmd_status(int argc, char **argv);
 int cmd_replay(int argc, char **argv);
 int cmd_mesh(int argc, char **argv);
 int cmd_scene(int argc, char **argv);
+int cmd_path(int argc, char **argv);
 
 /* The commands of fmb log; argv[0] is "info", ... */
 int cmd_log_info(int argc, char **argv);

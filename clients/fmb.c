@@ -33,6 +33,7 @@ static const struct command commands[] = {
     {"replay", "answer the queries of a log again, and compare", cmd_replay},
     {"log", "inspect and cut event logs, print results and scenes", cmd_log},
     {"scene", "print a URDF robot as a scene, or one for each row of joint values", cmd_scene},
+    {"path", "prove that a robot meets nothing between rows of joint values", cmd_path},
     {"mesh", "decide which faces of two triangle meshes meet", cmd_mesh},
     {"help", "help on a command: fmb help query", NULL}, /* run_menu() */
     {.name = NULL},

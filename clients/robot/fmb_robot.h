@@ -177,7 +177,7 @@ void fmb_robot_path_free(struct fmb_robot_path *path); /* may be NULL, or within
 /* Returns what was wrong in the last call that failed, as lines separated by line feeds. */
 const char *fmb_robot_path_why(struct fmb_robot_path *path);
 
-/* Returns the number of pairs of frames that are looked at on every edge. */
+/* Returns the number of pairs of placements that are looked at on every edge. */
 size_t fmb_robot_path_pairs(const struct fmb_robot_path *path);
 
 /* Returns the number of pairs of placements that meet and do not move relative to each other:
@@ -194,6 +194,11 @@ size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
  * Returns 0; or -1 after an error.
  * Cost: O(pairs of frames). */
 int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const double *to);
+
+/* Returns a bound of how far any two bodies move relative to each other if every joint is off by 1,
+ * radian or length, on the edges so far: a clearance c covers errors of up to c divided by it in
+ * all joints at once. */
+double fmb_robot_path_lever(const struct fmb_robot_path *path);
 
 enum fmb_robot_verdict {
     FMB_ROBOT_FREE = 1,     /* all pairs are at least `clearance` apart, at all times */

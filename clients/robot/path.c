@@ -428,7 +428,12 @@ const char *fmb_robot_path_why(struct fmb_robot_path *path)
 
 size_t fmb_robot_path_pairs(const struct fmb_robot_path *path)
 {
-    return path->pair_count;
+    return path->body_pairs;
+}
+
+double fmb_robot_path_lever(const struct fmb_robot_path *path)
+{
+    return path->lever;
 }
 
 size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
@@ -438,7 +443,7 @@ size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
     return path->touch_count;
 }
 
-int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to)
+int path_set_edge(struct fmb_robot_path *path, const double *from, const double *to)
 {
     static const double half_turn = 3.1415926535897932;
     const struct robot *tree = &path->scene->robot->tree;
@@ -464,7 +469,12 @@ int path_edge_of(struct fmb_robot_path *path, const double *from, const double *
     }
     if (!path->errors.out && !path_edge_begin(path))
         robot_say(&path->errors, "the robot or the world is too large");
-    if (path->errors.out)
+    return path->errors.out ? -1 : 0;
+}
+
+int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to)
+{
+    if (path_set_edge(path, from, to) != 0)
         return -1;
     path->closest = path->hit = INFINITY;
     path->phase = LEAST;

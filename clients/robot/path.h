@@ -29,8 +29,8 @@ struct path_part {
 /* The joints that move between two nodes, from a to b. Those whose value changes on the edge are
  * active. o_j, the origin of the child link of joint j, is a point on its axis. */
 struct path_chain {
-    unsigned *joint; /* [joint_count], owned by the path */
-    unsigned joint_count;
+    unsigned *joint;              /* [joint_count], owned by the path */
+    unsigned joint_count, rising; /* the first ones are on the way from a to the world */
     /* Of the edge, for each active joint, [active]: */
     unsigned active;
     struct path_joint {
@@ -47,6 +47,7 @@ struct path_family {
     unsigned a;
     struct path_chain chain;
     size_t first, count; /* of path.partner: the second parts, ascending */
+    double reach;        /* the greatest of these, of parts of links */
 };
 
 /* A directions is carried by the first part, by the second, or is the product of an edge of each.
@@ -106,7 +107,8 @@ struct fmb_robot_path {
     size_t family_count, family_capacity;
     unsigned *partner; /* [pair_count] */
     size_t pair_count, pair_capacity;
-    size_t rigid_count; /* pairs of parts that do not move relative to each other */
+    size_t body_pairs;  /* the same of placements */
+    size_t rigid_count; /* pairs of placements that do not move relative to each other */
     struct fmb_robot_touch *touches;
     size_t touch_count, touch_capacity;
     /* The edge: values of all joints of the tree. */
@@ -116,6 +118,7 @@ struct fmb_robot_path {
     double *turns;         /* [node_count]: error of its rotation, radians */
     double turn_error;     /* the greatest of them */
     double round;          /* bounds the error of a distance of origins */
+    double lever;          /* of all edges so far: fmb_robot_path_lever() */
     struct path_slot slots[PATH_SLOTS + 1 + PATH_SPARE];
     unsigned spare;
     /* The search. */
@@ -161,6 +164,9 @@ double path_prove(struct fmb_robot_path *path, const struct path_bounds *bounds,
 
 void path_turn(const double r[3][3], const double v[3], double out[3]);      /* r v */
 void path_turn_back(const double r[3][3], const double v[3], double out[3]); /* r transposed, v */
+
+/* Sets the values of all joints of the tree at both ends. Returns -1 after an error. */
+int path_set_edge(struct fmb_robot_path *path, const double *from, const double *to);
 
 /* As fmb_robot_path_edge(), for values of all joints of the tree. */
 int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to);

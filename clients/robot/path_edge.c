@@ -211,14 +211,35 @@ static void begin_chain(struct fmb_robot_path *path, struct path_chain *chain)
     }
 }
 
+/* Bounds how far two parts of a family move relative to each other if each joint between them turns
+ * by 1, or slides by 1. far - far[j] is the length of the way from o_j to a node beyond it. */
+static double lever_of(const struct fmb_robot_path *path, const struct path_family *family)
+{
+    const struct robot *tree = &path->scene->robot->tree;
+    const struct path_chain *chain = &family->chain;
+    const struct path_part *a = &path->parts[family->a];
+    const unsigned b = path->parts[path->partner[family->first]].node;
+    double sum = 0;
+    for (unsigned i = 0; i < chain->joint_count; i++) {
+        const struct robot_joint *joint = &tree->joints[chain->joint[i]];
+        const double from = path->far[joint->link[1]];
+        const double way = i < chain->rising ? path->far[a->node] - from + a->reach
+                                             : path->far[b] - from + family->reach;
+        sum += joint->type == ROBOT_PRISMATIC ? 1 : way;
+    }
+    return sum * OUTWARD;
+}
+
 bool path_edge_begin(struct fmb_robot_path *path)
 {
     for (int i = 0; i < PATH_SLOTS + 1 + PATH_SPARE; i++)
         path->slots[i].time = NAN;
     if (!bound_poses(path))
         return false;
-    for (size_t i = 0; i < path->family_count; i++)
+    for (size_t i = 0; i < path->family_count; i++) {
         begin_chain(path, &path->families[i].chain);
+        path->lever = fmax(path->lever, lever_of(path, &path->families[i]));
+    }
     return true;
 }
 

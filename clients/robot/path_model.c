@@ -164,6 +164,7 @@ static void find_chain(struct fmb_robot_path *path, unsigned a, unsigned b, stru
         depth[end]--;
     }
     out->joint_count = count[0] + count[1];
+    out->rising = count[0];
     out->joint = scene_alloc(&path->owner, out->joint_count, sizeof *out->joint);
     out->joints = scene_alloc(&path->owner, out->joint_count, sizeof *out->joints);
     memcpy(out->joint, side[0], count[0] * sizeof *out->joint);
@@ -219,12 +220,15 @@ static bool make_pairs(struct fmb_robot_path *path)
                 path->families = allocate_grow(path->families, &path->family_capacity,
                                                path->family_count + 1, sizeof *path->families);
                 family = &path->families[path->family_count++];
-                *family = (struct path_family){a, chain, path->pair_count, 0};
+                *family = (struct path_family){a, chain, path->pair_count, 0, 0};
             }
             path->partner = allocate_grow(path->partner, &path->pair_capacity, path->pair_count + 1,
                                           sizeof *path->partner);
             path->partner[path->pair_count++] = b;
             family->count++;
+            if (b < path->robot_parts)
+                family->reach = fmax(family->reach, parts[b].reach);
+            path->body_pairs += parts[a].frame == 0 && parts[b].frame == 0;
         }
     }
     return good;

@@ -1,0 +1,447 @@
+/* fmb path: proves that a robot meets nothing between the rows of a table. */
+#include "commands.h"
+
+#include "allocate.h"
+#include "complain.h"
+#include "escape.h"
+#include "json_write.h"
+#include "number.h"
+#include "path.h"
+#include "progress.h"
+#include "robot_run.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "usage: fmb path [OPTIONS] ROBOT.urdf --joints-csv FILE\n"
+    "\n"
+    "Proves that a robot meets nothing on its way from each row of a table to the\n"
+    "next, at all times, where the value of each joint runs straight from one row to\n"
+    "the next:\n"
+    "\n"
+    "  fmb path robot.urdf --joints-csv path.csv --with world.json --clearance 0.005\n"
+    "\n"
+    "An edge is the way from one row to the next. Edges count from 1: edge 1 goes from\n"
+    "scene 1 to scene 2 of 'fmb scene'. Verdicts of an edge:\n"
+    "\n"
+    "  free       all pairs are at least the clearance apart, at all times\n"
+    "  near       no contact, but nearer than --clearance, at the stated part\n"
+    "  contact    the first contact is within the stated part of the edge\n"
+    "  undecided  in the stated part, shorter than 2^-30, neither could be proven\n"
+    "\n"
+    "The true least distance is between 'clearance', which is proven, and 'closest',\n"
+    "that of a pose that was looked at. Parts of an edge are fractions, 0 to 1. A\n"
+    "path of one row is one pose. Not covered are blends and errors of a controller\n"
+    "beyond the clearance.\n"
+    "\n"
+    "Path:\n"
+    "  --joints-csv FILE    a table with a column for each joint that moves, named in\n"
+    "                       its first line; columns for mimic joints, \"label\" and\n"
+    "                       \"time\" are optional. Other columns are ignored\n"
+    "  --joints LIST        NAME=VALUE,...: values of joints without a column\n"
+    "  --clearance D        the distance to be proven; else the margin of the world.\n"
+    "                       Without both, or 0, the clearance of each edge is found\n"
+    "                       to a tenth\n"
+    "  --base POSE          X,Y,Z or X,Y,Z,ROLL,PITCH,YAW: the pose of the root link,\n"
+    "                       as in an <origin>\n"
+    "  --limit-slack D      how far values may be outside the limits of their joints,\n"
+    "                       in radians or lengths, before they are refused (0.001;\n"
+    "                       inf: any)\n"
+    "\n"
+    "Bodies:\n"
+    "  --with FILE          adds bodies, may be given several times, as for 'fmb scene'.\n"
+    "                       Bodies that move by themselves are refused\n"
+    "  --srdf FILE          ignores the pairs that an SRDF file disables, and no\n"
+    "                       other pairs of links\n"
+    "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by name;\n"
+    "                       may be given several times\n"
+    "  --sides N            sides of the hulls that enclose cylinders (16)\n"
+    "  --excess D           how far a hull may extend beyond its mesh (0)\n"
+    "  --objects            a hull for each object (o) of an OBJ file\n"
+    "  --package-path DIRS  folders to search for packages, separated by colons\n"
+    "\n"
+    "Output:\n"
+    "  --json               a line of JSON for each edge, and one for the path\n"
+    "  --verbose            lists the links, bodies and pairs that messages count\n"
+    "  -h, --help\n"
+    "\n"
+    "Exit codes: 0 free; 3 contact or near; 1 undecided; 2 wrong usage, or a file\n"
+    "that cannot be read or is not valid: no edge is printed.\n";
+
+enum { FOUND = 3 }; /* exit code: contact or near */
+
+static const char *const verdicts[] = {
+    [FMB_ROBOT_FREE] = "free",
+    [FMB_ROBOT_NEAR] = "near",
+    [FMB_ROBOT_CONTACT] = "contact",
+    [FMB_ROBOT_UNDECIDED] = "undecided",
+};
+
+struct path_run {
+    struct robot_run run;
+    const char *file; /* the robot */
+    const struct robot_run_options *options;
+    bool json;
+    double clearance; /* to be proven; 0: none */
+    struct fmb_robot_path *path;
+    double *from, *at; /* [joints of the tree]: values of the previous row, and at a place */
+    size_t edges, count[FMB_ROBOT_UNDECIDED + 1];
+    double least; /* proven of all edges */
+    char *first;  /* owned: a command that shows the first edge that is not free */
+};
+
+/* What is known of an edge besides the answer. */
+struct edge {
+    size_t number;
+    double time[2]; /* NAN: no column */
+    const char *label;
+};
+
+static const struct fmb_placement *body_of(const struct path_run *run, size_t i)
+{
+    return &run->run.scene->owner.scene.placements[i];
+}
+
+static void write_name(const struct path_run *run, size_t i, FILE *out)
+{
+    const struct fmb_placement *body = body_of(run, i);
+    if (body->name)
+        escape_text(out, body->name);
+    else
+        fprintf(out, "%" PRId64, body->id);
+}
+
+/* ---- The command that shows a pose ---- */
+
+/* Writes a word for a shell. */
+static void write_word(FILE *out, const char *word)
+{
+    static const char plain[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    putc(' ', out);
+    if (*word && word[strspn(word, plain)] == '\0') {
+        fputs(word, out);
+        return;
+    }
+    putc('\'', out);
+    for (; *word; word++)
+        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, out);
+    putc('\'', out);
+}
+
+static void write_command(const struct path_run *run, FILE *out)
+{
+    const struct robot_run_options *options = run->options;
+    const struct robot *tree = &run->run.robot->tree;
+    char number[NUMBER_TEXT_MAX], *values, word[2 * QUERY_NAME_MAX + 16];
+    size_t size;
+    fputs("fmb scene", out);
+    write_word(out, run->file);
+    FILE *list = open_memstream(&values, &size);
+    if (!list)
+        allocate_failed();
+    for (size_t j = 0; j < tree->joint_count; j++)
+        if (tree->joints[j].type != ROBOT_FIXED)
+            fprintf(list, "%s%s=%s",
+                    ftello(list) > 0 ? "," : "--joints=", tree->joints[j].name->name,
+                    number_exact(run->at[j], number));
+    fclose(list);
+    write_word(out, values);
+    free(values);
+    for (size_t i = 0; i < options->world_count; i++) {
+        fputs(" --with", out);
+        write_word(out, options->world[i]);
+    }
+    for (size_t i = 0; i < options->ignored_count; i++) {
+        fputs(" --ignore", out);
+        snprintf(word, sizeof word, "%s,%s", options->ignored[i][0], options->ignored[i][1]);
+        write_word(out, word);
+    }
+    const char *const names[] = {" --srdf", " --package-path"};
+    const char *const texts[] = {options->robot.srdf, options->robot.package_path};
+    for (int i = 0; i < 2; i++)
+        if (texts[i]) {
+            fputs(names[i], out);
+            write_word(out, texts[i]);
+        }
+    for (int i = 0; i < 6; i++)
+        if (options->robot.base[0] != 0 || options->robot.base[1] != 0 ||
+            options->robot.base[2] != 0 || options->robot.base[3] != 0 ||
+            options->robot.base[4] != 0 || options->robot.base[5] != 0)
+            fprintf(out, "%s%s", i == 0 ? " --base=" : ",",
+                    number_exact(options->robot.base[i], number));
+    if (options->sides != ENCLOSURE_SIDES)
+        fprintf(out, " --sides %ld", options->sides);
+    if (options->robot.excess > 0)
+        fprintf(out, " --excess %s", number_exact(options->robot.excess, number));
+    fputs(options->objects ? " --objects" : "", out);
+    fputs(" --limit-slack inf | fmb query --local --contacts --gap", out);
+}
+
+/* ---- Output ---- */
+
+static void write_json(const struct path_run *run, const struct edge *edge,
+                       const struct fmb_robot_edge *answer)
+{
+    const struct robot *tree = &run->run.robot->tree;
+    struct json_writer json = json_object(stdout);
+    json_integer(&json, "edge", (int64_t) edge->number);
+    if (!isnan(edge->time[0]))
+        json_number(&json, "time", edge->time[0] + answer->at[0] * (edge->time[1] - edge->time[0]));
+    if (*edge->label)
+        json_string(&json, "label", edge->label);
+    json_string(&json, "verdict", verdicts[answer->verdict]);
+    if (answer->verdict != FMB_ROBOT_FREE)
+        json_numbers(&json, "at", answer->at, 2);
+    if (answer->verdict == FMB_ROBOT_FREE || answer->verdict == FMB_ROBOT_NEAR)
+        json_number(&json, "clearance", answer->clearance);
+    json_number(&json, "closest", answer->closest);
+    if (answer->has_pair) {
+        const struct fmb_placement *a = body_of(run, answer->a), *b = body_of(run, answer->b);
+        json_integer(&json, "a", a->id);
+        json_integer(&json, "b", b->id);
+        json_begin(&json, "names", '[');
+        json_string(&json, NULL, a->name);
+        json_string(&json, NULL, b->name);
+        json_end(&json, ']');
+    }
+    if (answer->verdict != FMB_ROBOT_FREE) {
+        json_begin(&json, "joints", '{');
+        for (size_t j = 0; j < tree->joint_count; j++)
+            if (tree->joints[j].type != ROBOT_FIXED)
+                json_number(&json, tree->joints[j].name->name, run->at[j]);
+        json_end(&json, '}');
+    }
+    json_object_end(&json);
+}
+
+static void write_row(const struct path_run *run, const struct edge *edge,
+                      const struct fmb_robot_edge *answer)
+{
+    char text[4][NUMBER_TEXT_MAX], at[2 * NUMBER_TEXT_MAX + 8];
+    const bool proven = answer->verdict == FMB_ROBOT_NEAR;
+    number_ends(answer->at[0], answer->at[1], text[0], text[1]);
+    snprintf(at, sizeof at, strcmp(text[0], text[1]) != 0 ? "%s to %s" : "%s", text[0], text[1]);
+    printf("%6zu  %-9s  %-24s  %-11s  %-11s  ", edge->number, verdicts[answer->verdict], at,
+           proven ? number_short(answer->clearance, text[2]) : "-",
+           number_short(answer->closest, text[3]));
+    if (answer->has_pair) {
+        write_name(run, answer->a, stdout);
+        fputs(", ", stdout);
+        write_name(run, answer->b, stdout);
+    }
+    if (*edge->label) {
+        fputs("  from ", stdout);
+        escape_text(stdout, edge->label);
+    }
+    putchar('\n');
+}
+
+static void write_edge(struct path_run *run, const struct edge *edge,
+                       const struct fmb_robot_edge *answer)
+{
+    static const char heading[] =
+        "  edge  verdict    at                        clearance    closest      pair\n";
+    run->count[answer->verdict]++;
+    run->least = fmin(run->least, answer->clearance);
+    const bool shown = answer->verdict != FMB_ROBOT_FREE;
+    for (size_t j = 0; j < run->run.robot->tree.joint_count; j++) {
+        const double from = run->path->value[0][j], to = run->path->value[1][j];
+        run->at[j] = answer->at[1] == 1 ? to : from + answer->at[1] * (to - from);
+    }
+    progress_clear();
+    if (shown && !run->first) {
+        size_t size;
+        FILE *out = open_memstream(&run->first, &size);
+        if (!out)
+            allocate_failed();
+        write_command(run, out);
+        fclose(out);
+        fputs(run->json ? "" : heading, stdout);
+    }
+    if (run->json)
+        write_json(run, edge, answer);
+    else if (shown)
+        write_row(run, edge, answer);
+    progress_to((int64_t) edge->number, (int64_t) run->edges);
+}
+
+static const char *verdict_of(const struct path_run *run)
+{
+    for (int i = FMB_ROBOT_CONTACT; i >= FMB_ROBOT_NEAR; i--)
+        if (run->count[i] > 0)
+            return verdicts[i];
+    return verdicts[run->count[FMB_ROBOT_UNDECIDED] > 0 ? FMB_ROBOT_UNDECIDED : FMB_ROBOT_FREE];
+}
+
+/* Pairs that meet and do not move relative to each other. */
+static void write_touches(struct path_run *run)
+{
+    const struct fmb_robot_touch *touches;
+    const size_t count = fmb_robot_path_touches(run->path, &touches);
+    for (size_t i = 0; i < count; i++) {
+        const struct fmb_robot_touch *touch = &touches[i];
+        run->count[FMB_ROBOT_CONTACT] += touch->verdict == FMB_OVERLAPPING;
+        FILE *out = run->json ? stderr : stdout;
+        fprintf(out, "%s, at all times, as they do not move relative to each other: ",
+                fmb_verdict_name((int) touch->verdict));
+        write_name(run, touch->a, out);
+        fputs(", ", out);
+        write_name(run, touch->b, out);
+        putc('\n', out);
+    }
+}
+
+static void write_end(const struct path_run *run)
+{
+    const bool proven = run->count[FMB_ROBOT_CONTACT] + run->count[FMB_ROBOT_UNDECIDED] == 0;
+    const double lever = fmb_robot_path_lever(run->path);
+    const size_t moved = fmb_robot_moved(run->run.scene);
+    const size_t bodies = run->run.scene->owner.scene.placement_count;
+    const size_t pairs = moved * (moved - 1) / 2 + moved * (bodies - moved);
+    char text[2][NUMBER_TEXT_MAX];
+    if (run->json) {
+        struct json_writer json = json_object(stdout);
+        json_string(&json, "path", verdict_of(run));
+        json_integer(&json, "edges", (int64_t) run->edges);
+        json_integer(&json, "pairs", (int64_t) fmb_robot_path_pairs(run->path));
+        json_integer(&json, "ignored",
+                     (int64_t) (pairs - fmb_robot_path_pairs(run->path) - run->path->rigid_count));
+        if (proven) {
+            json_number(&json, "clearance", run->least);
+            json_number(&json, "joint_error", run->least / lever);
+        }
+        json_object_end(&json);
+        return;
+    }
+    printf("%s: edges: %zu", verdict_of(run), run->edges);
+    for (int i = FMB_ROBOT_FREE; i <= FMB_ROBOT_UNDECIDED; i++)
+        if (run->count[i] > 0)
+            printf(", %s: %zu", verdicts[i], run->count[i]);
+    if (proven && run->least < INFINITY)
+        printf(
+            "; clearance %s: it covers errors of up to %s (radians or lengths) of all joints at "
+            "once",
+            number_short(run->least * (1 - 1e-5), text[0]),
+            number_short(run->least / lever * (1 - 1e-5), text[1]));
+    putchar('\n');
+    if (run->first)
+        printf("The first of them: %s\n", run->first);
+}
+
+/* ---- Rows ---- */
+
+/* Handles all edges of the table: checks them, or proves and writes them. */
+static bool take_rows(struct path_run *run, struct joint_table *table, bool prove)
+{
+    struct joints *joints = &run->run.joints;
+    const size_t size = run->run.robot->tree.joint_count * sizeof *run->from;
+    enum joint_row row = joint_table_next(table);
+    bool good = row != JOINT_ROW_END;
+    run->edges = prove ? run->edges : 0;
+    if (!good)
+        complain("%s: expected a row of joint values, found none", table->place);
+    for (size_t number = 1; good && row == JOINT_ROW; number++) {
+        char label[sizeof table->label];
+        struct edge edge = {number, {table->time, table->time}, label};
+        struct fmb_robot_edge answer;
+        strcpy(label, table->label);
+        memcpy(run->from, joints->value, size);
+        row = joint_table_next(table);
+        if (row == JOINT_ROW_BAD || (row == JOINT_ROW_END && number > 1))
+            break;
+        if (row == JOINT_ROW)
+            edge.time[1] = table->time;
+        if (!prove) {
+            run->edges = number;
+            good = joints->refused || path_set_edge(run->path, run->from, joints->value) == 0;
+            if (!good)
+                robot_world_print(table->place, fmb_robot_path_why(run->path));
+            continue;
+        }
+        path_edge_of(run->path, run->from, joints->value);
+        while (!fmb_robot_path_step(run->path, &answer))
+            ;
+        write_edge(run, &edge, &answer);
+        good = !ferror(stdout);
+    }
+    return good && row != JOINT_ROW_BAD;
+}
+
+static bool prove_table(struct path_run *run)
+{
+    struct joint_table table;
+    struct joints *joints = &run->run.joints;
+    if (fmb_robot_path_begin(run->run.scene, run->clearance, &run->path) != 0) {
+        robot_world_print("", fmb_robot_path_why(run->path));
+        return false;
+    }
+    run->run.path = run->path;
+    bool good = joint_table_open(run->options->table, joints, &table) &&
+                take_rows(run, &table, false) && joints_check(joints);
+    if (good) {
+        robot_run_measure(&run->run);
+        robot_run_report(&run->run, &table);
+        progress_begin("edges");
+        write_touches(run);
+        good = joint_table_rewind(&table) && take_rows(run, &table, true);
+        progress_end();
+    }
+    if (good)
+        write_end(run);
+    joint_table_close(&table);
+    return good;
+}
+
+static int prove_file(struct path_run *run)
+{
+    bool good = robot_run_begin(run->options, run->file, &run->run);
+    if (good) {
+        const size_t joints = run->run.robot->tree.joint_count;
+        run->from = allocate(joints, sizeof *run->from);
+        run->at = allocate(joints, sizeof *run->at);
+        if (run->clearance < 0)
+            run->clearance = run->run.scene->owner.scene.margin;
+        good = prove_table(run);
+    }
+    fmb_robot_path_free(run->path);
+    robot_run_end(&run->run);
+    free(run->from);
+    free(run->at);
+    free(run->first);
+    good = output_flush() && good;
+    return !good                                                            ? ARGS_USAGE
+           : run->count[FMB_ROBOT_CONTACT] + run->count[FMB_ROBOT_NEAR] > 0 ? FOUND
+           : run->count[FMB_ROBOT_UNDECIDED] > 0                            ? ARGS_FAILED
+                                                                            : ARGS_ANSWERED;
+}
+
+int cmd_path(int argc, char **argv)
+{
+    struct robot_run_options options = ROBOT_RUN_DEFAULTS;
+    struct path_run run = {.options = &options, .clearance = -1, .least = INFINITY};
+    const struct args_option own[] = {
+        ROBOT_RUN_OPTIONS(options),
+        {"clearance", ARGS_NUMBER, &run.clearance, .high = DBL_MAX},
+        {"json", ARGS_FLAG, .out = &run.json},
+        {.name = NULL},
+    };
+    struct args args = {"path",           usage, own, .operand = "ROBOT.urdf", .operands_min = 1,
+                        .operands_max = 1};
+    int code = robot_run_parse(&args, argc, argv, &options);
+    if (code == ARGS_RUN && !options.table) {
+        args_error(&args, "expected --joints-csv FILE");
+        code = ARGS_USAGE;
+    }
+    if (code == ARGS_RUN) {
+        run.file = args.operands[0];
+        code = prove_file(&run);
+    }
+    free(options.world);
+    free(options.ignored);
+    return code;
+}

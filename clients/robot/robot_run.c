@@ -1,0 +1,312 @@
+#include "robot_run.h"
+
+#include "allocate.h"
+#include "complain.h"
+#include "fmb_batch.h"
+#include "number.h"
+#include "path.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool robot_run_take_once(const struct args *args, void *out)
+{
+    const char **text = out;
+    if (*text)
+        return args_error(args, "--%s is given twice", args->option);
+    *text = optarg;
+    return true;
+}
+
+bool robot_run_take_world(const struct args *args, void *out)
+{
+    struct robot_run_options *options = out;
+    (void) args;
+    options->world = allocate_grow(options->world, &options->world_capacity,
+                                   options->world_count + 1, sizeof *options->world);
+    options->world[options->world_count++] = optarg;
+    return true;
+}
+
+bool robot_run_take_ignored(const struct args *args, void *out)
+{
+    struct robot_run_options *options = out;
+    char *comma = strchr(optarg, ',');
+    if (!comma)
+        return args_error(args, "--ignore: expected two names, NAME,NAME, found '%s'", optarg);
+    *comma = '\0';
+    options->ignored = allocate_grow(options->ignored, &options->ignored_capacity,
+                                     options->ignored_count + 1, sizeof *options->ignored);
+    options->ignored[options->ignored_count][0] = optarg;
+    options->ignored[options->ignored_count++][1] = comma + 1;
+    return true;
+}
+
+bool robot_run_take_base(const struct args *args, void *out)
+{
+    struct robot_run_options *options = out;
+    char *end = optarg;
+    int count = 0;
+    for (bool more = true; more && count < 6; count++) {
+        const char *at = end + (count > 0); /* after a comma */
+        options->robot.base[count] = strtod(at, &end);
+        if (end == at || !isfinite(options->robot.base[count]))
+            return args_error(args, "--base: expected numbers, found '%s'", optarg);
+        more = *end == ',';
+    }
+    if ((count != 3 && count != 6) || *end)
+        return args_error(args, "--base: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, found '%s'",
+                          optarg);
+    return true;
+}
+
+bool robot_run_place(struct robot_run *run, double time, const char *where)
+{
+    const bool good = robot_scene_place(run->scene, run->joints.value, time, where);
+    if (!good)
+        robot_world_print("", robot_lines_text(&run->scene->errors));
+    return good;
+}
+
+/* ---- Messages on stderr: at most three lines, without --verbose ---- */
+
+static FILE *begin_text(char **text, size_t *size)
+{
+    FILE *out = open_memstream(text, size);
+    if (!out)
+        allocate_failed();
+    return out;
+}
+
+static void end_text(FILE *out, const char *place, char **text)
+{
+    fclose(out);
+    complain("%s%s", place, *text);
+    free(*text);
+}
+
+void robot_run_measure(struct robot_run *run)
+{
+    double most[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < run->robot->body_count; i++) {
+        const struct fmb_placement *link = &run->scene->placements[i];
+        for (unsigned k = 0; k < link->body->frame_count; k++) {
+            struct fmb_prepared frame;
+            double box[2][FMB_DIM_MAX];
+            fmb_prepare(link, k, 1, &frame);
+            fmb_box_of(&frame, 0, box);
+            for (int axis = 0; axis < 3; axis++) {
+                most[0][axis] = fmin(most[0][axis], box[0][axis]);
+                most[1][axis] = fmax(most[1][axis], box[1][axis]);
+            }
+        }
+    }
+    for (int axis = 0; axis < 3; axis++)
+        run->size[axis] = most[1][axis] - most[0][axis];
+}
+
+static double excess_of(const struct robot_world *world)
+{
+    return world->robot ? fmb_robot_excess(world->robot) : world->json.outside;
+}
+
+static void report_robot(const struct robot_run *run)
+{
+    double excess = fmb_robot_excess(run->robot);
+    char text[5][NUMBER_TEXT_MAX], more[128] = "", unit[4600] = "";
+    for (int axis = 0; axis < 3; axis++)
+        number_short(run->size[axis], text[axis]);
+    const struct robot_meshes *meshes = &run->robot->meshes;
+    for (size_t w = 0; w < run->options->world_count; w++) {
+        excess = fmax(excess, excess_of(&run->worlds[w]));
+        if (meshes->scaled == 0 && run->worlds[w].robot)
+            meshes = &run->worlds[w].robot->meshes;
+    }
+    if (excess > 0) /* rounded up */
+        snprintf(more, sizeof more, "; hulls extend beyond what they enclose by at most %s",
+                 number_short(excess * (1 + 1e-5), text[3]));
+    if (meshes->scaled > 0)
+        snprintf(
+            unit, sizeof unit,
+            "; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: %s m "
+            "in %s, files: %zu",
+            number_short(meshes->first_unit, text[4]), meshes->first_file, meshes->scaled);
+    complain("%s: links: %zu, with a body: %zu; size: %s x %s x %s%s%s%s", run->robot->tree.path,
+             run->robot->tree.link_count, run->robot->body_count, text[0], text[1], text[2],
+             run->options->table ? " in the first pose" : "", more, unit);
+}
+
+static const char *const origin_names[ROBOT_ORIGINS + 2] = {
+    [ROBOT_NEIGHBOURS] = "neighbours",
+    [ROBOT_SRDF] = "by the SRDF",
+    [ROBOT_SRDF_DEFAULT] = "by its defaults",
+    [ROBOT_CARRIED] = "carried",
+    [ROBOT_WORLD] = "by scenes",
+    [ROBOT_OPTION] = "by --ignore",
+    [ROBOT_ORIGINS] = "joined rigidly",
+    [ROBOT_ORIGINS + 1] = "within groups"};
+
+static void report_srdf(const struct fmb_robot *robot, FILE *out)
+{
+    enum { NAMED = 8 };
+    if (robot->unlisted > 0)
+        fprintf(out, "; tested neighbours that the SRDF does not list: %zu", robot->unlisted);
+    if (robot->unknown_count == 0)
+        return;
+    fprintf(out, "; links of the SRDF that the robot does not have: %zu (", robot->unknown_count);
+    const char *at = robot->unknown.text;
+    for (int i = 0; i < NAMED && *at; i++) {
+        const int length = (int) strcspn(at, "\n");
+        fprintf(out, "%s%.*s", i > 0 ? ", " : "", length, at);
+        at += length + (at[length] == '\n');
+    }
+    fprintf(out, "%s)", *at ? ", ..." : "");
+}
+
+static void report_pairs(const struct robot_run *run)
+{
+    struct fmb_robot_scene *scene = run->scene;
+    const uint64_t n = scene->owner.scene.placement_count;
+    const uint64_t still = run->path ? n - fmb_robot_moved(scene) : 0; /* bodies of the world */
+    const uint64_t tested = run->path ? run->path->body_pairs + run->path->rigid_count
+                                      : scene_count_pairs(&scene->owner);
+    const uint64_t pairs = n * (n - 1) / 2 - (still > 0 ? still * (still - 1) / 2 : 0);
+    const uint64_t ignored = pairs - tested;
+    uint64_t count[ROBOT_ORIGINS + 2] = {0};
+    const char *before = ": ";
+    char *text;
+    size_t size;
+    FILE *out = begin_text(&text, &size);
+    for (size_t i = 0; i < scene->ignored.count; i++)
+        count[scene->ignored.pair[i].origin] += scene->ignored.pair[i].a < n - still;
+    for (unsigned i = 1; i < run->robot->body_count; i++)
+        for (unsigned k = 0; k < i; k++)
+            count[ROBOT_ORIGINS] += pair_is_within_group(&scene->owner.scene, k, i);
+    count[ROBOT_ORIGINS + 1] = ignored;
+    for (int origin = 0; origin <= ROBOT_ORIGINS; origin++)
+        count[ROBOT_ORIGINS + 1] -= count[origin];
+    fprintf(out, "pairs tested: %" PRIu64 ", ignored: %" PRIu64, tested, ignored);
+    for (int origin = 0; origin < ROBOT_ORIGINS + 2; origin++)
+        if (count[origin] > 0) {
+            fprintf(out, "%s%" PRIu64 " %s", before, count[origin], origin_names[origin]);
+            before = ", ";
+        }
+    if (run->path && run->path->rigid_count > 0)
+        fprintf(out, "; decided once, as they do not move relative to each other: %zu",
+                run->path->rigid_count);
+    if (still > 1)
+        fprintf(out, "; bodies of the world are not tested against each other");
+    report_srdf(run->robot, out);
+    end_text(out, "", &text);
+}
+
+/* table: NULL if there is none. */
+static void report_joints(const struct robot_run *run, const struct joint_table *table)
+{
+    char *text;
+    size_t size;
+    FILE *out = begin_text(&text, &size);
+    if (table)
+        joint_table_describe(table, out);
+    joints_describe(&run->joints, out);
+    fclose(out);
+    if (size > 0)
+        complain("%s: %s", table ? run->options->table : "joints", text + (table ? 0 : 2));
+    free(text);
+}
+
+/* Lists what the other lines count. */
+static void report_more(const struct robot_run *run)
+{
+    const struct fmb_robot *robot = run->robot;
+    const struct robot *tree = &robot->tree;
+    for (size_t i = 0; i < tree->link_count; i++)
+        if (robot->body_of_link[i] == ROBOT_NO_BODY)
+            complain("%s: link '%s' has no <collision> and no body", tree->path,
+                     tree->links[i].name->name);
+    robot_world_print("", robot_lines_text(&run->scene->notes));
+    for (size_t i = 0; i < run->scene->ignored.count; i++) {
+        const struct robot_pair *pair = &run->scene->ignored.pair[i];
+        const struct fmb_placement *a = &run->scene->placements[pair->a];
+        const struct fmb_placement *b = &run->scene->placements[pair->b];
+        complain("ignored: %" PRId64 " %s and %" PRId64 " %s: %s", a->id, a->name ? a->name : "",
+                 b->id, b->name ? b->name : "", origin_names[pair->origin]);
+    }
+    for (size_t i = 0; i < robot->body_count && !robot->srdf; i++)
+        if (robot->rigid[i] != i)
+            complain("joined rigidly: %s and %s", robot->link_names[robot->rigid[i]],
+                     robot->link_names[i]);
+    if (robot->unknown_count > 0)
+        robot_world_print("the robot has no link", robot->unknown.text);
+}
+
+void robot_run_report(const struct robot_run *run, const struct joint_table *table)
+{
+    report_robot(run);
+    report_pairs(run);
+    report_joints(run, table);
+    if (run->options->verbose)
+        report_more(run);
+}
+
+/* Reads the worlds, and makes the scene. */
+static bool make_scene(struct robot_run *run)
+{
+    const struct robot_run_options *options = run->options;
+    const size_t count = options->world_count;
+    struct fmb_robot_world *world = allocate(count, sizeof *world);
+    bool good = true;
+    for (size_t w = 0; w < count; w++)
+        good = robot_world_read(options->world[w], &options->robot, &run->worlds[w]) && good;
+    robot_world_set_groups(run->worlds, count);
+    for (size_t w = 0; w < count; w++)
+        world[w] = run->worlds[w].world;
+    if (good &&
+        fmb_robot_scene(run->robot, world, count, (const char *const(*)[2]) options->ignored,
+                        options->ignored_count, &run->scene) != 0) {
+        robot_world_print("", fmb_robot_scene_why(run->scene));
+        good = false;
+    }
+    if (good && options->margin >= 0)
+        run->scene->owner.scene.margin = options->margin;
+    free(world);
+    return good;
+}
+
+bool robot_run_begin(const struct robot_run_options *options, const char *path,
+                     struct robot_run *out)
+{
+    *out = (struct robot_run){.options = options,
+                              .worlds = allocate(options->world_count, sizeof *out->worlds)};
+    if (fmb_robot_read(path, &options->robot, &out->robot) != 0) {
+        robot_world_print("", fmb_robot_why(out->robot));
+        return false;
+    }
+    return joints_open(&out->robot->tree, options->joints, options->slack, &out->joints) &&
+           make_scene(out);
+}
+
+void robot_run_end(struct robot_run *run)
+{
+    joints_clear(&run->joints);
+    for (size_t w = 0; w < run->options->world_count; w++)
+        robot_world_clear(&run->worlds[w]);
+    free(run->worlds);
+    fmb_robot_scene_free(run->scene);
+    fmb_robot_free(run->robot);
+}
+
+int robot_run_parse(struct args *args, int argc, char **argv, struct robot_run_options *options)
+{
+    int code = args_parse(args, argc, argv);
+    if (code == ARGS_RUN && options->sides % 4 != 0) {
+        args_error(args, "--sides: expected a multiple of 4, found %ld", options->sides);
+        code = ARGS_USAGE;
+    }
+    options->robot.sides = (int) options->sides;
+    options->robot.objects = options->objects;
+    return code;
+}

@@ -1,0 +1,91 @@
+/* What fmb scene and fmb path have in common: their options, a robot among the bodies of files, and
+ * messages about it. */
+#ifndef ROBOT_RUN_H
+#define ROBOT_RUN_H
+
+#include "args.h"
+#include "enclosure.h"
+#include "joints.h"
+#include "robot_scene.h"
+#include "robot_world.h"
+
+#include <float.h>
+
+struct robot_run_options {
+    struct fmb_robot_options robot;
+    long sides;
+    bool objects, verbose;
+    const char *joints, *table;
+    const char **world; /* owned, [world_count]: files */
+    size_t world_count, world_capacity;
+    const char *(*ignored)[2]; /* owned, [ignored_count]: pairs of names */
+    size_t ignored_count, ignored_capacity;
+    double margin; /* negative: not given */
+    double slack;
+};
+
+/* All defaults. */
+#define ROBOT_RUN_DEFAULTS                                     \
+    {                                                          \
+        .sides = ENCLOSURE_SIDES, .margin = -1, .slack = 0.001 \
+    }
+
+/* The elements of a table of options that fill them in. */
+#define ROBOT_RUN_OPTIONS(options)                                                                \
+    {"joints", ARGS_OTHER, &(options).joints, .take = robot_run_take_once},                       \
+        {"joints-csv", ARGS_OTHER, &(options).table, .take = robot_run_take_once},                \
+        {"limit-slack", ARGS_NUMBER, &(options).slack, .high = INFINITY},                         \
+        {"base", ARGS_OTHER, &(options), .take = robot_run_take_base},                            \
+        {"sides", ARGS_INTEGER, &(options).sides, .low = 4, .high = ENCLOSURE_SIDES_MAX},         \
+        {"excess", ARGS_NUMBER, &(options).robot.excess, .high = DBL_MAX},                        \
+        {"objects", ARGS_FLAG, .out = &(options).objects},                                        \
+        {"package-path", ARGS_OTHER, &(options).robot.package_path, .take = robot_run_take_once}, \
+        {"with", ARGS_OTHER, &(options), .take = robot_run_take_world},                           \
+        {"srdf", ARGS_OTHER, &(options).robot.srdf, .take = robot_run_take_once},                 \
+        {"ignore", ARGS_OTHER, &(options), .take = robot_run_take_ignored},                       \
+    {                                                                                             \
+        "verbose", ARGS_FLAG, .out = &(options).verbose                                           \
+    }
+
+/* Takes a text that may be given once: the last of several would hide the others. */
+bool robot_run_take_once(const struct args *args, void *out);
+bool robot_run_take_world(const struct args *args, void *out);
+
+/* Takes NAME,NAME, which is divided in place. */
+bool robot_run_take_ignored(const struct args *args, void *out);
+
+/* Takes X,Y,Z or X,Y,Z,ROLL,PITCH,YAW. */
+bool robot_run_take_base(const struct args *args, void *out);
+
+/* A robot among the bodies of files. */
+struct robot_run {
+    const struct robot_run_options *options;
+    struct fmb_robot *robot;
+    struct fmb_robot_scene *scene;
+    struct robot_world *worlds; /* [options->world_count] */
+    struct joints joints;
+    const struct fmb_robot_path *path; /* fmb path: which pairs are tested; else NULL */
+    double size[3]; /* of the bodies of links in the first pose, along each axis */
+};
+
+/* Reads the robot and the worlds, and makes the scene. Returns false after errors, which were
+ * printed. The caller passes the run to robot_run_end() in either case. */
+bool robot_run_begin(const struct robot_run_options *options, const char *path,
+                     struct robot_run *out);
+void robot_run_end(struct robot_run *run);
+
+/* Parses the arguments of a command whose options are these and others. Returns ARGS_RUN, or an
+ * exit code. */
+int robot_run_parse(struct args *args, int argc, char **argv, struct robot_run_options *options);
+
+/* As robot_scene_place(), for the values of the joints; errors are printed. */
+bool robot_run_place(struct robot_run *run, double time, const char *where);
+
+/* Sets the size, in the current pose. */
+void robot_run_measure(struct robot_run *run);
+
+/* Prints on stderr what was read, in at most three lines; with --verbose, lists what they count.
+ * table: NULL if there is none. */
+void robot_run_report(const struct robot_run *run, const struct joint_table *table);
+
+#endif
