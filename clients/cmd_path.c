@@ -25,8 +25,8 @@ static const char usage[] =
     "\n"
     "  fmb path robot.urdf --joints-csv path.csv --with world.json --clearance 0.005\n"
     "\n"
-    "An edge is the way from one row to the next. Edges count from 1: edge 1 goes from\n"
-    "scene 1 to scene 2 of 'fmb scene'. Verdicts of an edge:\n"
+    "An edge is the way from one row to the next. Edges count from 1: edge 1 goes\n"
+    "from scene 1 to scene 2 of 'fmb scene'. Verdicts of an edge:\n"
     "\n"
     "  free       all pairs are at least the clearance apart, at all times\n"
     "  near       no contact, but nearer than --clearance, at the stated part\n"
@@ -106,13 +106,13 @@ static const struct fmb_placement *body_of(const struct path_run *run, size_t i)
     return &run->run.scene->owner.scene.placements[i];
 }
 
-static void write_name(const struct path_run *run, size_t i, FILE *out)
+static void write_name(const struct path_run *run, size_t i)
 {
     const struct fmb_placement *body = body_of(run, i);
     if (body->name)
-        escape_text(out, body->name);
+        escape_text(stdout, body->name);
     else
-        fprintf(out, "%" PRId64, body->id);
+        printf("%" PRId64, body->id);
 }
 
 /* ---- The command that shows a pose ---- */
@@ -184,6 +184,16 @@ static void write_command(const struct path_run *run, FILE *out)
 
 /* ---- Output ---- */
 
+static void write_pair(const struct path_run *run, struct json_writer *json, size_t a, size_t b)
+{
+    json_integer(json, "a", body_of(run, a)->id);
+    json_integer(json, "b", body_of(run, b)->id);
+    json_begin(json, "names", '[');
+    json_string(json, NULL, body_of(run, a)->name);
+    json_string(json, NULL, body_of(run, b)->name);
+    json_end(json, ']');
+}
+
 static void write_json(const struct path_run *run, const struct edge *edge,
                        const struct fmb_robot_edge *answer)
 {
@@ -200,15 +210,8 @@ static void write_json(const struct path_run *run, const struct edge *edge,
     if (answer->verdict == FMB_ROBOT_FREE || answer->verdict == FMB_ROBOT_NEAR)
         json_number(&json, "clearance", answer->clearance);
     json_number(&json, "closest", answer->closest);
-    if (answer->has_pair) {
-        const struct fmb_placement *a = body_of(run, answer->a), *b = body_of(run, answer->b);
-        json_integer(&json, "a", a->id);
-        json_integer(&json, "b", b->id);
-        json_begin(&json, "names", '[');
-        json_string(&json, NULL, a->name);
-        json_string(&json, NULL, b->name);
-        json_end(&json, ']');
-    }
+    if (answer->has_pair)
+        write_pair(run, &json, answer->a, answer->b);
     if (answer->verdict != FMB_ROBOT_FREE) {
         json_begin(&json, "joints", '{');
         for (size_t j = 0; j < tree->joint_count; j++)
@@ -230,9 +233,9 @@ static void write_row(const struct path_run *run, const struct edge *edge,
            proven ? number_short(answer->clearance, text[2]) : "-",
            number_short(answer->closest, text[3]));
     if (answer->has_pair) {
-        write_name(run, answer->a, stdout);
+        write_name(run, answer->a);
         fputs(", ", stdout);
-        write_name(run, answer->b, stdout);
+        write_name(run, answer->b);
     }
     if (*edge->label) {
         fputs("  from ", stdout);
@@ -286,13 +289,19 @@ static void write_touches(struct path_run *run)
     for (size_t i = 0; i < count; i++) {
         const struct fmb_robot_touch *touch = &touches[i];
         run->count[FMB_ROBOT_CONTACT] += touch->verdict == FMB_OVERLAPPING;
-        FILE *out = run->json ? stderr : stdout;
-        fprintf(out, "%s, at all times, as they do not move relative to each other: ",
-                fmb_verdict_name((int) touch->verdict));
-        write_name(run, touch->a, out);
-        fputs(", ", out);
-        write_name(run, touch->b, out);
-        putc('\n', out);
+        if (run->json) {
+            struct json_writer json = json_object(stdout);
+            json_string(&json, "rigid", fmb_verdict_name((int) touch->verdict));
+            write_pair(run, &json, touch->a, touch->b);
+            json_object_end(&json);
+            continue;
+        }
+        printf("%s, at all times, as they do not move relative to each other: ",
+               fmb_verdict_name((int) touch->verdict));
+        write_name(run, touch->a);
+        fputs(", ", stdout);
+        write_name(run, touch->b);
+        putchar('\n');
     }
 }
 

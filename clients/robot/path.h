@@ -1,5 +1,4 @@
-/* The model of a path, and the bounds of one of its edges: what path.c searches, and path_proof.c
- * writes.
+/* The model of a path, and the bounds of one of its edges: what path.c searches.
  *
  * Nodes are the links of the robot, and the world, node link_count. A part is a frame of a body, as
  * the hull of its vertices in coordinates of the node that carries it. Parts of links come first,

@@ -13,7 +13,7 @@ setup() {
 }
 
 @test "each command prints its usage, in 80 columns, wherever help is asked for" {
-    [ "${#commands[@]}" = 12 ]
+    [ "${#commands[@]}" = 13 ]
     for words in '' "${commands[@]}"; do
         # shellcheck disable=SC2086
         run --separate-stderr "$FMB" $words --help
