@@ -1,38 +1,22 @@
-/* COLLADA parser. Expat's events become a tree of elements. The nodes of the file's scene are then
- * visited, and the primitives of each instance of a geometry become vertices, transformed, and
- * faces. Numbers are read from the bytes of the file, so that errors name their line.
+/* COLLADA parser. The nodes of the file's scene are visited, and the primitives of each instance of
+ * a geometry become vertices, transformed, and faces. Text is read where it stands in the file, so
+ * that errors name its line.
  *
- * Files are not trusted. A document type declaration is refused, so that no entity expands. Nodes
- * may contain instances of other nodes, so that a small file may describe any number of faces. So
- * the bytes that are read, repetitions included, and the depth are bounded, and a node that
- * contains itself is an error. */
+ * Files are not trusted (xml.h). Nodes may contain instances of others, which multiply: what is
+ * read is bounded with its repetitions, as is the depth, and a node within itself is an error. */
 #include "mesh_source.h"
 
-#include "keyed_hash.h"
 #include "turn.h"
+#include "xml.h"
 
-#include <expat.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     BYTES_MAX = 1 << 28, /* of the file; twice as many may be read, where instances repeat them */
-    VISIT_BYTES = 64,    /* counted for each child of a node */
-    ELEMENTS_MAX = 1 << 20,
-    DEPTH_MAX = 256 /* of nodes */
-};
-
-struct element {
-    const unsigned char *begin, *end;     /* of all of it */
-    const unsigned char *text, *text_end; /* its text, before the first child */
-    const char *name;
-    const char *attributes;                       /* name, value, ..., "": each ends with a 0 */
-    struct element *parent, *child, *last, *next; /* first and last child; next sibling */
-    struct element *previous;                     /* in the list of all */
-    UT_hash_handle hh;                            /* by id */
-    bool repeated;                                /* another element has its id */
-    bool open;                                    /* a node that is being visited */
+    VISIT_BYTES = 64,    /* counted for each element that is read */
+    DEPTH_MAX = 256      /* of nodes */
 };
 
 /* Maps x to row[i][0] x[0] + row[i][1] x[1] + row[i][2] x[2] + row[i][3]. */
@@ -48,167 +32,75 @@ struct numbers {
 
 struct dae {
     struct mesh_build build;
-    XML_Parser xml;
-    struct element *root, *at, *all, *ids; /* at: the open element; ids: a table */
-    size_t element_count, bytes;           /* bytes: read, with repetitions */
+    struct owned_scene memory;      /* of the elements */
+    struct xml_element *root, *ids; /* ids: a table */
+    size_t bytes;                   /* read, with repetitions */
     struct numbers numbers, sizes;
     /* The vertices of the last primitive, in the same instance of a geometry. */
-    const struct element *vertices; /* NULL: there was none */
-    size_t first, count;            /* their range in the mesh */
+    const struct xml_element *vertices; /* NULL: there was none */
+    size_t first, count;                /* their range in the mesh */
 };
 
 #define refuse(dae, element, ...) mesh_refuse((dae)->build.source, (element)->begin, __VA_ARGS__)
 
-/* ---- The tree -------------------------------------------------------------------------------- */
-
-static const unsigned char *position(const struct dae *dae)
-{
-    const struct mesh_source *source = dae->build.source;
-    const XML_Index index = XML_GetCurrentByteIndex(dae->xml);
-    return index >= 0 && (size_t) index < mesh_left(source) ? source->at + index : source->end;
-}
-
-/* Stops the parser: there is an error. */
-static void stop(struct dae *dae, const char *why)
-{
-    mesh_refuse(dae->build.source, position(dae), "%s", why);
-    XML_StopParser(dae->xml, XML_FALSE);
-}
-
-static bool has_stopped(const struct dae *dae)
-{
-    return *dae->build.source->error;
-}
-
-static void XMLCALL on_begin(void *user, const XML_Char *name, const XML_Char **attributes)
-{
-    struct dae *dae = user;
-    struct element *parent = dae->at, *other;
-    size_t size = strlen(name) + 2;
-    if (++dae->element_count > ELEMENTS_MAX && !has_stopped(dae))
-        stop(dae, "more than a million elements");
-    if (has_stopped(dae))
-        return;
-    for (int i = 0; attributes[i]; i++)
-        size += strlen(attributes[i]) + 1;
-    struct element *element = allocate(1, sizeof *element + size);
-    char *at = stpcpy((char *) (element + 1), name) + 1;
-    *element = (struct element){.begin = position(dae),
-                                .name = (char *) (element + 1),
-                                .attributes = at,
-                                .parent = parent,
-                                .previous = dae->all};
-    element->text = element->text_end = element->begin + XML_GetCurrentByteCount(dae->xml);
-    for (int i = 0; attributes[i]; i += 2) {
-        char *value = stpcpy(at, attributes[i]) + 1;
-        at = stpcpy(value, attributes[i + 1]) + 1;
-        if (strcmp(attributes[i], "id") != 0)
-            continue;
-        HASH_FIND_STR(dae->ids, value, other);
-        if (other)
-            other->repeated = true;
-        else
-            HASH_ADD_KEYPTR(hh, dae->ids, value, strlen(value), element);
-    }
-    dae->all = dae->at = element;
-    if (parent && !parent->child)
-        parent->text_end = element->begin;
-    *(!parent ? &dae->root : parent->last ? &parent->last->next : &parent->child) = element;
-    if (parent)
-        parent->last = element;
-}
-
-static void XMLCALL on_end(void *user, const XML_Char *name)
-{
-    struct dae *dae = user;
-    (void) name;
-    if (has_stopped(dae))
-        return;
-    dae->at->end = position(dae);
-    if (!dae->at->child)
-        dae->at->text_end = dae->at->end;
-    dae->at = dae->at->parent;
-}
-
-static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system,
-                               const XML_Char *public, int internal)
-{
-    (void) name, (void) system, (void) public, (void) internal;
-    stop(user, "<!DOCTYPE>: document types and entities are not supported: remove the declaration");
-}
-
+/* Makes the tree of elements, and the table of their ids. */
 static bool parse(struct dae *dae)
 {
     struct mesh_source *source = dae->build.source;
+    struct xml_element *other;
+    struct xml_error error;
     if (mesh_left(source) > BYTES_MAX)
         return mesh_refuse(source, source->begin, "more than 256 MB: give the mesh as binary STL");
-    dae->xml = XML_ParserCreate(NULL);
-    if (!dae->xml)
-        allocate_failed();
-    XML_SetUserData(dae->xml, dae);
-    XML_SetElementHandler(dae->xml, on_begin, on_end);
-    XML_SetStartDoctypeDeclHandler(dae->xml, on_doctype);
-    const bool good = XML_Parse(dae->xml, (const char *) source->at, (int) mesh_left(source),
-                                XML_TRUE) == XML_STATUS_OK;
-    if (!good && !has_stopped(dae))
-        mesh_refuse(source, position(dae), "XML: %s", XML_ErrorString(XML_GetErrorCode(dae->xml)));
-    XML_ParserFree(dae->xml);
-    return good;
-}
-
-/* ---- Elements and attributes ----------------------------------------------------------------- */
-
-static bool is(const struct element *element, const char *name)
-{
-    return strcmp(element->name, name) == 0;
-}
-
-/* Returns the first child of a name; NULL: there is none, or no parent. */
-static struct element *find_child(const struct element *parent, const char *name)
-{
-    struct element *child = parent ? parent->child : NULL;
-    while (child && !is(child, name))
-        child = child->next;
-    return child;
-}
-
-/* Returns the value of an attribute; NULL: there is none. */
-static const char *find_attribute(const struct element *element, const char *name)
-{
-    const char *at = element->attributes;
-    while (*at) {
-        const char *value = at + strlen(at) + 1;
-        if (strcmp(at, name) == 0)
-            return value;
-        at = value + strlen(value) + 1;
+    dae->root = xml_parse(source->at, mesh_left(source), &dae->memory, &error);
+    if (!dae->root)
+        return mesh_refuse(source, error.at, "%s", error.text);
+    for (struct xml_element *element = dae->root; element; element = xml_next(element)) {
+        const char *id = xml_attribute(element, "id");
+        if (!id)
+            continue;
+        HASH_FIND_STR(dae->ids, id, other);
+        if (other)
+            other->repeated = true;
+        else
+            HASH_ADD_KEYPTR(hh, dae->ids, id, strlen(id), element);
     }
-    return NULL;
+    return true;
 }
 
-static bool has_value(const struct element *element, const char *name, const char *value)
+/* ---- Elements -------------------------------------------------------------------------------- */
+
+/* Whether an element is supported, or has no surface. Returns false after an error. */
+static bool check(struct dae *dae, const struct xml_element *element)
 {
-    const char *found = find_attribute(element, name);
-    return found && strcmp(found, value) == 0;
+    static const char *const names[] = {"trifans", "tristrips", "ph", "instance_controller",
+                                        "lookat",  "skew"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (xml_is(element, names[i]))
+            return refuse(dae, element, "<%s> is not supported", element->name);
+    return true;
 }
 
 /* Returns the <input> with a semantic; NULL: there is none. */
-static const struct element *find_input(const struct element *parent, const char *semantic)
+static const struct xml_element *find_input(const struct xml_element *parent, const char *semantic)
 {
-    const struct element *input = parent->child;
-    while (input && !(is(input, "input") && has_value(input, "semantic", semantic)))
-        input = input->next;
+    const struct xml_element *input = parent->child;
+    for (; input; input = input->next) {
+        const char *found = xml_is(input, "input") ? xml_attribute(input, "semantic") : NULL;
+        if (found && strcmp(found, semantic) == 0)
+            break;
+    }
     return input;
 }
 
 /* Returns the element of this kind to which an attribute refers; NULL after an error. */
-static struct element *refer(struct dae *dae, const struct element *from, const char *name,
-                             const char *kind)
+static struct xml_element *refer(struct dae *dae, const struct xml_element *from, const char *name,
+                                 const char *kind)
 {
-    const char *url = find_attribute(from, name);
-    struct element *found = NULL;
+    const char *url = xml_attribute(from, name);
+    struct xml_element *found = NULL;
     if (url && *url == '#')
         HASH_FIND_STR(dae->ids, url + 1, found);
-    if (found && is(found, kind) && !found->repeated)
+    if (found && xml_is(found, kind) && !found->repeated)
         return found;
     refuse(dae, from, "<%s>: its %s is not the id of one <%s> in this file", from->name, name,
            kind);
@@ -216,10 +108,10 @@ static struct element *refer(struct dae *dae, const struct element *from, const 
 }
 
 /* Reads a count, below 2^31. A missing attribute is an error if missing < 0. */
-static bool read_count(struct dae *dae, const struct element *element, const char *name,
+static bool read_count(struct dae *dae, const struct xml_element *element, const char *name,
                        int missing, size_t *out)
 {
-    const char *text = find_attribute(element, name);
+    const char *text = xml_attribute(element, name);
     char *end;
     if (!text && missing >= 0) {
         *out = (size_t) missing;
@@ -230,16 +122,17 @@ static bool read_count(struct dae *dae, const struct element *element, const cha
            refuse(dae, element, "<%s>: its %s is not a count", element->name, name);
 }
 
-/* Counts the bytes from begin to end as read. Returns false after an error: they are too many. */
-static bool spend(struct dae *dae, const unsigned char *begin, const unsigned char *end)
+/* Counts the bytes of an element that is read, up to `end`. Returns false after an error: there are
+ * too many. */
+static bool spend(struct dae *dae, const struct xml_element *element, const unsigned char *end)
 {
-    dae->bytes += (size_t) (end - begin);
+    dae->bytes += VISIT_BYTES + (size_t) (end - element->begin);
     return dae->bytes <= 2 * (size_t) BYTES_MAX ||
-           mesh_refuse(dae->build.source, begin, "more than 512 MB, with all instances");
+           refuse(dae, element, "more than 512 MB, with all instances");
 }
 
 /* Reads the text of an element: finite numbers. */
-static bool read_numbers(struct dae *dae, const struct element *element, struct numbers *out)
+static bool read_numbers(struct dae *dae, const struct xml_element *element, struct numbers *out)
 {
     struct mesh_source *source = dae->build.source;
     const unsigned char *at = mesh_skip_spaces(element->text), *last = element->text_end, *end;
@@ -260,19 +153,20 @@ static bool read_numbers(struct dae *dae, const struct element *element, struct 
 /* ---- Primitives ------------------------------------------------------------------------------ */
 
 /* Adds the vertices of a <vertices>, transformed. */
-static bool add_vertices(struct dae *dae, const struct element *vertices, const struct affine *at)
+static bool add_vertices(struct dae *dae, const struct xml_element *vertices,
+                         const struct affine *at)
 {
-    const struct element *input = find_input(vertices, "POSITION"), *source, *accessor, *array;
+    const struct xml_element *input = find_input(vertices, "POSITION"), *source, *accessor, *array;
     size_t numbers, count, stride, offset;
     if (!input)
         return refuse(dae, vertices, "<vertices> has no <input> of POSITION");
     if (!(source = refer(dae, input, "source", "source")))
         return false;
-    if (!(accessor = find_child(find_child(source, "technique_common"), "accessor")))
+    if (!(accessor = xml_child(xml_child(source, "technique_common"), "accessor")))
         return refuse(dae, source, "<source> has no <accessor>");
     if (!(array = refer(dae, accessor, "source", "float_array")) ||
-        !spend(dae, vertices->begin, vertices->end) || !spend(dae, source->begin, source->end) ||
-        !spend(dae, array->begin, array->end) || !read_count(dae, array, "count", -1, &numbers) ||
+        !spend(dae, vertices, vertices->end) || !spend(dae, source, source->end) ||
+        !spend(dae, array, array->end) || !read_count(dae, array, "count", -1, &numbers) ||
         !read_count(dae, accessor, "count", -1, &count) ||
         !read_count(dae, accessor, "stride", 1, &stride) ||
         !read_count(dae, accessor, "offset", 0, &offset) ||
@@ -303,23 +197,19 @@ static bool add_vertices(struct dae *dae, const struct element *vertices, const 
     return true;
 }
 
-enum primitive { TRIANGLES, POLYLIST, POLYGONS, FANS, STRIPS, PRIMITIVES };
-static const char *const primitive_name[PRIMITIVES] = {"triangles", "polylist", "polygons",
-                                                       "trifans", "tristrips"};
-
-/* A list of primitives. */
+/* A list of primitives: triangles or a polylist, in one <p>; or polygons, each in its own. */
 struct set {
-    const struct element *element, *p; /* p: the list of indices that is read */
-    enum primitive primitive;
-    size_t stride, offset; /* a corner has `stride` indices; that of its vertex is at `offset` */
+    const struct xml_element *element, *p; /* p: the list of indices that is read */
+    size_t count, stride,
+        offset; /* a corner has `stride` indices; that of its vertex is at `offset` */
 };
 
-/* Adds the faces of a primitive. */
-static bool add_primitive(struct dae *dae, const struct set *set, const double *index, size_t count)
+/* Adds the faces of a polygon. */
+static bool add_polygon(struct dae *dae, const struct set *set, const double *index, size_t count)
 {
-    const bool polygon = set->primitive == POLYLIST || set->primitive == POLYGONS;
+    const bool triangles = xml_is(set->element, "triangles");
     unsigned corner[3] = {0};
-    if (count < 3 || (count > 3 && polygon && dae->build.source->faces == MESH_TRIANGLES))
+    if (count < 3 || (count > 3 && !triangles && dae->build.source->faces == MESH_TRIANGLES))
         return refuse(dae, set->p, "a face of %zu vertices: %s", count,
                       count > 3 ? "triangulate it first" : "remove it first");
     for (size_t n = 0; n < count; n++) {
@@ -328,7 +218,7 @@ static bool add_primitive(struct dae *dae, const struct set *set, const double *
             return refuse(dae, set->p, "index %g is no vertex: there are %zu, from 0 on", next,
                           dae->count);
         if (n >= 3)
-            corner[set->primitive == STRIPS ? (n + 1) % 2 : 1] = corner[2];
+            corner[1] = corner[2];
         corner[n < 3 ? n : 2] = (unsigned) (dae->first + (size_t) next);
         if (n >= 2 && !mesh_add_face(&dae->build, corner))
             return false;
@@ -336,7 +226,7 @@ static bool add_primitive(struct dae *dae, const struct set *set, const double *
     return true;
 }
 
-/* Adds the primitives of a <p>, `count` of them. */
+/* Adds `count` polygons of a <p>. */
 static bool add_list(struct dae *dae, const struct set *set, size_t count)
 {
     const struct numbers *numbers = &dae->numbers;
@@ -345,12 +235,12 @@ static bool add_list(struct dae *dae, const struct set *set, size_t count)
         return false;
     const size_t all = numbers->count / set->stride;
     for (size_t i = 0; i < count && at <= all; i++, at += corners) {
-        if (set->primitive == POLYLIST)
+        if (xml_is(set->element, "polylist"))
             corners = (size_t) fmin(fmax(floor(dae->sizes.number[i]), 0), (double) all + 1);
-        else if (set->primitive != TRIANGLES)
+        else if (xml_is(set->element, "polygons"))
             corners = all;
         if (corners <= all - at &&
-            !add_primitive(dae, set, numbers->number + set->stride * at, corners))
+            !add_polygon(dae, set, numbers->number + set->stride * at, corners))
             return false;
     }
     return at * set->stride == numbers->count ||
@@ -360,24 +250,23 @@ static bool add_list(struct dae *dae, const struct set *set, size_t count)
 
 static bool add_set(struct dae *dae, struct set *set, const struct affine *at)
 {
-    /* Whether all primitives are in one <p>. */
-    const bool together = set->primitive == TRIANGLES || set->primitive == POLYLIST;
-    const struct element *element = set->element, *vertex = find_input(element, "VERTEX");
-    const struct element *vcount = find_child(element, "vcount"), *vertices;
-    size_t count, lists = 1, offset;
-    if (!read_count(dae, element, "count", -1, &count))
+    const struct xml_element *element = set->element, *vertex = find_input(element, "VERTEX");
+    const struct xml_element *vcount = xml_child(element, "vcount"), *vertices;
+    const bool polygons = xml_is(element, "polygons");
+    size_t offset, found = 0;
+    if (!read_count(dae, element, "count", -1, &set->count))
         return false;
-    if (count == 0 && !find_child(element, "p"))
+    if (set->count == 0 && !xml_child(element, "p"))
         return true;
     if (!vertex)
         return refuse(dae, element, "<%s> has no <input> of VERTEX", element->name);
     if (!(vertices = refer(dae, vertex, "source", "vertices")) ||
         (vertices != dae->vertices && !add_vertices(dae, vertices, at)))
         return false;
-    for (const struct element *child = element->child; child; child = child->next) {
-        if (is(child, "ph"))
-            return refuse(dae, child, "<ph>: polygons with holes are not supported");
-        if (!is(child, "input"))
+    for (const struct xml_element *child = element->child; child; child = child->next) {
+        if (!check(dae, child))
+            return false;
+        if (!xml_is(child, "input"))
             continue;
         if (!read_count(dae, child, "offset", -1, &offset))
             return false;
@@ -387,33 +276,34 @@ static bool add_set(struct dae *dae, struct set *set, const struct affine *at)
     dae->sizes.count = 0;
     if (vcount && !read_numbers(dae, vcount, &dae->sizes))
         return false;
-    if (set->primitive == POLYLIST && dae->sizes.count != count)
+    if (xml_is(element, "polylist") && dae->sizes.count != set->count)
         return refuse(dae, element, "<polylist> has %zu numbers in <vcount>, not %zu",
-                      dae->sizes.count, count);
-    if (!together)
-        lists = count;
-    size_t found = 0;
+                      dae->sizes.count, set->count);
+    const size_t lists = polygons ? set->count : 1;
     for (set->p = element->child; set->p; set->p = set->p->next)
-        if (is(set->p, "p") && found++ < lists && !add_list(dae, set, together ? count : 1))
+        if (xml_is(set->p, "p") && found++ < lists &&
+            !add_list(dae, set, polygons ? 1 : set->count))
             return false;
     return found == lists ||
            refuse(dae, element, "<%s> has %zu <p>, not %zu", element->name, found, lists);
 }
 
-static bool add_geometry(struct dae *dae, const struct element *geometry, const struct affine *at)
+static bool add_geometry(struct dae *dae, const struct xml_element *geometry,
+                         const struct affine *at)
 {
-    const struct element *mesh = find_child(geometry, "mesh");
-    if (!spend(dae, geometry->begin, geometry->end))
+    const struct xml_element *mesh = xml_child(geometry, "mesh");
+    if (!spend(dae, geometry, geometry->end))
         return false;
     if (!mesh)
         return refuse(dae, geometry, "<geometry> has no <mesh>: other kinds are not supported");
     dae->vertices = NULL;
-    for (const struct element *child = mesh->child; child; child = child->next)
-        for (int i = 0; i < PRIMITIVES; i++) { /* <lines> and <linestrips> have no surface */
-            struct set set = {.element = child, .primitive = (enum primitive) i};
-            if (is(child, primitive_name[i]) && !add_set(dae, &set, at))
-                return false;
-        }
+    for (const struct xml_element *child = mesh->child; child; child = child->next) {
+        struct set set = {.element = child};
+        const bool faces = xml_is(child, "triangles") || xml_is(child, "polylist") ||
+                           xml_is(child, "polygons"); /* others have no surface */
+        if (!check(dae, child) || (faces && !add_set(dae, &set, at)))
+            return false;
+    }
     return true;
 }
 
@@ -447,13 +337,13 @@ static void rotate(const double q[4], double n[12])
 }
 
 /* Applies a transformation, if the element is one. */
-static bool transform(struct dae *dae, const struct element *element, struct affine *at)
+static bool transform(struct dae *dae, const struct xml_element *element, struct affine *at)
 {
     static const char *const names[] = {"matrix", "rotate", "translate", "scale"};
     static const size_t counts[] = {16, 4, 3, 3};
     double n[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     size_t kind = 0;
-    while (kind < 4 && !is(element, names[kind]))
+    while (kind < 4 && !xml_is(element, names[kind]))
         kind++;
     if (kind == 4)
         return true;
@@ -478,21 +368,18 @@ static bool transform(struct dae *dae, const struct element *element, struct aff
 }
 
 /* Adds what a node of the scene, or the scene itself, contains. */
-static bool visit(struct dae *dae, struct element *node, struct affine at, int depth)
+static bool visit(struct dae *dae, struct xml_element *node, struct affine at, int depth)
 {
     if (node->open || depth == DEPTH_MAX)
         return refuse(dae, node, "<%s>: %s", node->name,
                       node->open ? "the node contains an instance of itself"
                                  : "more than 256 nodes within each other");
     node->open = true;
-    for (struct element *child = node->child; child; child = child->next) {
-        struct element *inner = child;
-        const bool nested = is(child, "node"), instance = is(child, "instance_node");
-        const bool geometry = is(child, "instance_geometry");
-        dae->bytes += VISIT_BYTES;
-        if (is(child, "instance_controller") || is(child, "lookat") || is(child, "skew"))
-            return refuse(dae, child, "<%s> is not supported", child->name);
-        if (!spend(dae, child->begin, nested ? child->text : child->end) ||
+    for (struct xml_element *child = node->child; child; child = child->next) {
+        struct xml_element *inner = child;
+        const bool nested = xml_is(child, "node"), instance = xml_is(child, "instance_node");
+        const bool geometry = xml_is(child, "instance_geometry");
+        if (!check(dae, child) || !spend(dae, child, nested ? child->text : child->end) ||
             !transform(dae, child, &at) ||
             ((geometry || instance) &&
              !(inner = refer(dae, child, "url", geometry ? "geometry" : "node"))) ||
@@ -506,11 +393,12 @@ static bool visit(struct dae *dae, struct element *node, struct affine at, int d
 
 static bool read_scene(struct dae *dae, struct mesh *out)
 {
-    const struct element *root = dae->root;
-    const struct element *unit = find_child(find_child(root, "asset"), "unit");
-    const struct element *instance = find_child(find_child(root, "scene"), "instance_visual_scene");
-    const char *meter = unit ? find_attribute(unit, "meter") : NULL;
-    if (!is(root, "COLLADA"))
+    const struct xml_element *root = dae->root;
+    const struct xml_element *unit = xml_child(xml_child(root, "asset"), "unit");
+    const struct xml_element *instance =
+        xml_child(xml_child(root, "scene"), "instance_visual_scene");
+    const char *meter = unit ? xml_attribute(unit, "meter") : NULL;
+    if (!xml_is(root, "COLLADA"))
         return refuse(dae, root, "expected <COLLADA>: other formats in XML are not supported");
     if (meter) {
         const unsigned char *end = mesh_number((const unsigned char *) meter, &out->unit);
@@ -519,7 +407,7 @@ static bool read_scene(struct dae *dae, struct mesh *out)
     }
     if (!instance)
         return refuse(dae, root, "<COLLADA> has no <scene> with an <instance_visual_scene>");
-    struct element *scene = refer(dae, instance, "url", "visual_scene");
+    struct xml_element *scene = refer(dae, instance, "url", "visual_scene");
     const double m = meter ? out->unit : 1;
     return scene && visit(dae, scene, (struct affine){{{m}, {0, m}, {0, 0, m}}}, 0);
 }
@@ -532,9 +420,6 @@ bool mesh_dae(struct mesh_source *source, struct mesh *out)
     HASH_CLEAR(hh, dae.ids);
     free(dae.numbers.number);
     free(dae.sizes.number);
-    for (struct element *element = dae.all, *previous; element; element = previous) {
-        previous = element->previous;
-        free(element);
-    }
+    scene_clear(&dae.memory);
     return good;
 }

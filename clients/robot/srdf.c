@@ -2,7 +2,7 @@
  * ignored. As in MoveIt, <disable_collisions> has precedence over <enable_collisions>, and both
  * over <disable_default_collisions>, which disables all pairs of a link. */
 #include "robot_scene.h"
-#include "xml.h"
+#include "urdf_reader.h"
 
 #include "allocate.h"
 #include "utf8.h"
@@ -11,7 +11,7 @@
 #include <string.h>
 
 struct srdf {
-    struct xml_reader xml;
+    struct urdf_reader xml;
     struct fmb_robot *robot;
     size_t known;                /* names of links that the robot has */
     struct robot_name *unknown;  /* table of other names; entries belong to the tree */
@@ -20,10 +20,10 @@ struct srdf {
 
 /* Returns the body of the link that an attribute names; ROBOT_NO_BODY if it has none, or after an
  * error, or if the robot has no such link, which is counted. */
-static unsigned read_body(struct srdf *srdf, const struct xml_node *node, const char *attribute)
+static unsigned read_body(struct srdf *srdf, const struct xml_element *node, const char *attribute)
 {
     struct robot *tree = &srdf->robot->tree;
-    const char *name = xml_find_attribute(&srdf->xml, node, attribute, true);
+    const char *name = urdf_attribute(&srdf->xml, node, attribute, true);
     const struct robot_name *found, *first;
     if (!name)
         return ROBOT_NO_BODY;
@@ -36,14 +36,14 @@ static unsigned read_body(struct srdf *srdf, const struct xml_node *node, const 
     return ROBOT_NO_BODY;
 }
 
-static void read_pair(struct srdf *srdf, const struct xml_node *node, struct robot_pairs *out)
+static void read_pair(struct srdf *srdf, const struct xml_element *node, struct robot_pairs *out)
 {
     const unsigned a = read_body(srdf, node, "link1"), b = read_body(srdf, node, "link2");
     if (a != ROBOT_NO_BODY && b != ROBOT_NO_BODY && a != b)
         robot_pairs_add(out, a, b, ROBOT_SRDF);
 }
 
-static void read_default(struct srdf *srdf, const struct xml_node *node)
+static void read_default(struct srdf *srdf, const struct xml_element *node)
 {
     struct fmb_robot *robot = srdf->robot;
     const unsigned body = read_body(srdf, node, "link");
@@ -54,16 +54,14 @@ static void read_default(struct srdf *srdf, const struct xml_node *node)
     robot->untested[body] = true;
 }
 
-static void read_elements(struct srdf *srdf, const struct xml_node *root)
+static void read_elements(struct srdf *srdf, const struct xml_element *root)
 {
-    struct xml_reader *xml = &srdf->xml;
+    struct urdf_reader *xml = &srdf->xml;
     if (!xml_is(root, "robot"))
-        xml_refuse(xml, root->line, "expected <robot>, found <%.64s>: give a file of SRDF",
-                   root->name);
-    for (const struct xml_node *node = root->child; node && !xml->failed; node = node->next) {
+        urdf_refuse(xml, root, "expected <robot>, found <%.64s>: give a file of SRDF", root->name);
+    for (const struct xml_element *node = root->child; node && !xml->failed; node = node->next) {
         if (xml_is(node, "link") || xml_is(node, "joint")) {
-            xml_refuse(xml, node->line, "<%s>: this is URDF: --srdf takes a file of SRDF",
-                       node->name);
+            urdf_refuse(xml, node, "<%s>: this is URDF: --srdf takes a file of SRDF", node->name);
             return;
         }
         if (xml_is(node, "disable_collisions"))
@@ -108,9 +106,9 @@ static size_t count_unlisted(const struct fmb_robot *robot, const struct robot_p
 bool robot_read_srdf(struct fmb_robot *robot)
 {
     struct srdf srdf = {.robot = robot};
-    bool good = xml_read(&srdf.xml, &robot->tree, robot->srdf);
+    bool good = urdf_open(&srdf.xml, &robot->tree, robot->srdf);
     if (good)
-        read_elements(&srdf, srdf.xml.document.child);
+        read_elements(&srdf, srdf.xml.root);
     robot->unknown_count = HASH_COUNT(srdf.unknown);
     HASH_CLEAR(hh, srdf.unknown);
     good = good && !srdf.xml.bad;

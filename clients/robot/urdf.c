@@ -1,6 +1,6 @@
 /* Reads URDF: links and joints; all else (<visual>, <inertial>, <gazebo>, ...) is ignored. Links,
  * joints and elements are bounded (robot.h). */
-#include "xml.h"
+#include "urdf_reader.h"
 
 #include "allocate.h"
 #include "query.h"
@@ -13,28 +13,29 @@
 /* ---- Attributes ---- */
 
 /* Reads count numbers. A missing attribute leaves out unchanged. */
-static void read_numbers(struct xml_reader *reader, const struct xml_node *node, const char *name,
-                         bool required, int count, double *out)
+static void read_numbers(struct urdf_reader *reader, const struct xml_element *node,
+                         const char *name, bool required, int count, double *out)
 {
-    const char *value = xml_find_attribute(reader, node, name, required);
+    const char *value = urdf_attribute(reader, node, name, required);
     if (value && !robot_numbers(value, count, out))
-        xml_refuse(reader, node->line, "<%s>: %s is '%.64s', expected %d finite number%s",
-                   node->name, name, value, count, count > 1 ? "s, separated by spaces" : "");
+        urdf_refuse(reader, node, "<%s>: %s is '%.64s', expected %d finite number%s", node->name,
+                    name, value, count, count > 1 ? "s, separated by spaces" : "");
 }
 
-static void read_sizes(struct xml_reader *reader, const struct xml_node *node, const char *name,
+static void read_sizes(struct urdf_reader *reader, const struct xml_element *node, const char *name,
                        int count, double *out)
 {
     read_numbers(reader, node, name, true, count, out);
     for (int i = 0; i < count; i++)
         if (out[i] < 0)
-            xml_refuse(reader, node->line, "<%s>: %s is negative", node->name, name);
+            urdf_refuse(reader, node, "<%s>: %s is negative", node->name, name);
 }
 
 /* Reads a pose: xyz, and rpy or, in URDF 1.1, quat_xyzw, which may have any length. */
-static void read_origin(struct xml_reader *reader, const struct xml_node *parent, struct pose *out)
+static void read_origin(struct urdf_reader *reader, const struct xml_element *parent,
+                        struct pose *out)
 {
-    const struct xml_node *node = xml_find_child(reader, parent, "origin");
+    const struct xml_element *node = urdf_child(reader, parent, "origin");
     double rpy[3] = {0}, q[4] = {0};
     bool has_rpy = false, has_q = false;
     *out = POSE_IDENTITY;
@@ -45,22 +46,21 @@ static void read_origin(struct xml_reader *reader, const struct xml_node *parent
         has_q = has_q || strcmp(at[0], "quat_xyzw") == 0;
         if (strcmp(at[0], "xyz") != 0 && strcmp(at[0], "rpy") != 0 &&
             strcmp(at[0], "quat_xyzw") != 0)
-            xml_refuse(reader, node->line,
-                       "<origin>: %.64s is not supported: give xyz, and rpy or "
-                       "quat_xyzw",
-                       at[0]);
+            urdf_refuse(reader, node,
+                        "<origin>: %.64s is not supported: give xyz, and rpy or "
+                        "quat_xyzw",
+                        at[0]);
     }
     read_numbers(reader, node, "xyz", false, 3, out->p);
     read_numbers(reader, node, "rpy", false, 3, rpy);
     read_numbers(reader, node, "quat_xyzw", false, 4, q);
     for (int i = 0; i < 3; i++)
         if (fabs(rpy[i]) > TURN_RADIANS_MAX)
-            xml_refuse(reader, node->line, "<origin>: rpy is beyond %.0f radians",
-                       TURN_RADIANS_MAX);
+            urdf_refuse(reader, node, "<origin>: rpy is beyond %.0f radians", TURN_RADIANS_MAX);
     if (has_q && has_rpy)
-        xml_refuse(reader, node->line, "<origin> has both rpy and quat_xyzw");
+        urdf_refuse(reader, node, "<origin> has both rpy and quat_xyzw");
     else if (has_q && q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0)
-        xml_refuse(reader, node->line, "<origin>: quat_xyzw is 0, which is no rotation");
+        urdf_refuse(reader, node, "<origin>: quat_xyzw is 0, which is no rotation");
     if (reader->failed)
         return;
     if (has_q) {
@@ -72,25 +72,24 @@ static void read_origin(struct xml_reader *reader, const struct xml_node *parent
 }
 
 /* Begins to read a link or a joint: adds its name to the table. Returns NULL after an error. */
-static const struct robot_name *begin(struct xml_reader *reader, const struct xml_node *node,
+static const struct robot_name *begin(struct urdf_reader *reader, const struct xml_element *node,
                                       struct robot_name **table)
 {
-    const char *name = xml_find_attribute(reader, node, "name", true);
+    const char *name = urdf_attribute(reader, node, "name", true);
     const struct robot_name *first;
     struct robot_name *added = NULL;
     if (!name)
         return NULL;
     if (HASH_COUNT(*table) == ROBOT_COUNT_MAX)
-        xml_refuse(reader, node->line, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX,
-                   node->name);
+        urdf_refuse(reader, node, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX, node->name);
     else if (!query_name_ok(name))
-        xml_refuse(reader, node->line,
-                   "<%s>: the name '%.80s' has more than %d bytes, or is not UTF-8 without "
-                   "control characters",
-                   node->name, name, (int) QUERY_NAME_MAX);
+        urdf_refuse(reader, node,
+                    "<%s>: the name '%.80s' has more than %d bytes, or is not UTF-8 without "
+                    "control characters",
+                    node->name, name, (int) QUERY_NAME_MAX);
     else if (!(added = robot_add_name(reader->robot, table, name, &first)))
-        xml_refuse(reader, node->line, "there is already a %s '%s', in line %lu", node->name, name,
-                   first->line);
+        urdf_refuse(reader, node, "there is already a %s '%s', in line %lu", node->name, name,
+                    first->line);
     if (!added)
         return NULL;
     added->line = node->line;
@@ -101,7 +100,7 @@ static const struct robot_name *begin(struct xml_reader *reader, const struct xm
 
 /* ---- Links ---- */
 
-static void read_shape(struct xml_reader *reader, const struct xml_node *node,
+static void read_shape(struct urdf_reader *reader, const struct xml_element *node,
                        struct robot_element *out)
 {
     if (xml_is(node, "box")) {
@@ -116,37 +115,37 @@ static void read_shape(struct xml_reader *reader, const struct xml_node *node,
         read_sizes(reader, node, "radius", 1, out->size);
     } else if (xml_is(node, "mesh")) {
         out->shape = ROBOT_MESH;
-        out->file = xml_find_attribute(reader, node, "filename", true);
+        out->file = urdf_attribute(reader, node, "filename", true);
         out->size[0] = out->size[1] = out->size[2] = 1;
         read_numbers(reader, node, "scale", false, 3, out->size);
     } else {
-        xml_refuse(reader, node->line, "<%.64s>: expected a box, cylinder, sphere, capsule or mesh",
-                   node->name);
+        urdf_refuse(reader, node, "<%.64s>: expected a box, cylinder, sphere, capsule or mesh",
+                    node->name);
     }
 }
 
 /* Returns the first of a list of elements whose name has no prefix of another namespace, or NULL.
  */
-static const struct xml_node *skip_foreign(const struct xml_node *node)
+static const struct xml_element *skip_foreign(const struct xml_element *node)
 {
     while (node && strchr(node->name, ':'))
         node = node->next;
     return node;
 }
 
-static void read_collision(struct xml_reader *reader, const struct xml_node *node)
+static void read_collision(struct urdf_reader *reader, const struct xml_element *node)
 {
     struct robot *robot = reader->robot;
-    const struct xml_node *geometry = xml_find_child(reader, node, "geometry");
-    const struct xml_node *first = geometry ? geometry->child : NULL, *own = skip_foreign(first);
-    const struct xml_node *second = own ? skip_foreign(own->next) : NULL,
-                          *shape = own ? own : first;
+    const struct xml_element *geometry = urdf_child(reader, node, "geometry");
+    const struct xml_element *first = geometry ? geometry->child : NULL, *own = skip_foreign(first);
+    const struct xml_element *second = own ? skip_foreign(own->next) : NULL,
+                             *shape = own ? own : first;
     if (robot->element_count == ROBOT_COUNT_MAX)
-        xml_refuse(reader, node->line, "more than %d <collision> elements", (int) ROBOT_COUNT_MAX);
+        urdf_refuse(reader, node, "more than %d <collision> elements", (int) ROBOT_COUNT_MAX);
     if (!shape)
-        xml_refuse(reader, node->line, "<collision> has no <geometry> with a shape");
+        urdf_refuse(reader, node, "<collision> has no <geometry> with a shape");
     else if (second)
-        xml_refuse(reader, second->line, "<%.64s>: there is already a shape", second->name);
+        urdf_refuse(reader, second, "<%.64s>: there is already a shape", second->name);
     if (reader->failed)
         return;
     robot->elements = allocate_grow(robot->elements, &robot->element_capacity,
@@ -158,14 +157,14 @@ static void read_collision(struct xml_reader *reader, const struct xml_node *nod
     robot->element_count += !reader->failed;
 }
 
-static void read_link(struct xml_reader *reader, const struct xml_node *node)
+static void read_link(struct urdf_reader *reader, const struct xml_element *node)
 {
     struct robot *robot = reader->robot;
     const struct robot_name *name = begin(reader, node, &robot->link_names);
     const size_t first = robot->element_count;
     if (!name)
         return;
-    for (const struct xml_node *child = node->child; child; child = child->next)
+    for (const struct xml_element *child = node->child; child; child = child->next)
         if (xml_is(child, "collision")) {
             read_collision(reader, child);
             reader->failed = false; /* the others are read too */
@@ -181,25 +180,25 @@ static void read_link(struct xml_reader *reader, const struct xml_node *node)
 
 /* ---- Joints ---- */
 
-static void read_type(struct xml_reader *reader, const struct xml_node *node,
+static void read_type(struct urdf_reader *reader, const struct xml_element *node,
                       struct robot_joint *out)
 {
     static const char *const types[] = {"revolute", "continuous", "prismatic", "fixed"};
-    const char *type = xml_find_attribute(reader, node, "type", true);
+    const char *type = urdf_attribute(reader, node, "type", true);
     for (int i = 0; type && i < 4; i++)
         if (strcmp(types[i], type) == 0) {
             out->type = (enum robot_joint_type) i;
             return;
         }
-    xml_refuse(
-        reader, node->line,
+    urdf_refuse(
+        reader, node,
         "its type is '%.64s', expected revolute, continuous, prismatic or fixed (in place of "
         "planar or floating: a chain of these)",
         type ? type : "");
 }
 
 /* Components are first divided by the largest one, so that the length does not overflow. */
-static void read_axis(struct xml_reader *reader, const struct xml_node *node,
+static void read_axis(struct urdf_reader *reader, const struct xml_element *node,
                       struct robot_joint *out)
 {
     double most = 0, square = 0;
@@ -211,10 +210,10 @@ static void read_axis(struct xml_reader *reader, const struct xml_node *node,
     for (int i = 0; i < 3; i++)
         out->axis[i] = out->axis[i] / most / sqrt(square);
     if (most == 0 && out->type != ROBOT_FIXED)
-        xml_refuse(reader, node->line, "<axis>: xyz is 0");
+        urdf_refuse(reader, node, "<axis>: xyz is 0");
 }
 
-static void read_joint(struct xml_reader *reader, const struct xml_node *node)
+static void read_joint(struct urdf_reader *reader, const struct xml_element *node)
 {
     static const char *const ends[2] = {"parent", "child"};
     struct robot *robot = reader->robot;
@@ -226,23 +225,23 @@ static void read_joint(struct xml_reader *reader, const struct xml_node *node)
         return;
     read_type(reader, node, &joint);
     read_origin(reader, node, &joint.origin);
-    const struct xml_node *axis = xml_find_child(reader, node, "axis"),
-                          *limit = xml_find_child(reader, node, "limit"),
-                          *mimic = xml_find_child(reader, node, "mimic");
+    const struct xml_element *axis = urdf_child(reader, node, "axis"),
+                             *limit = urdf_child(reader, node, "limit"),
+                             *mimic = urdf_child(reader, node, "mimic");
     for (int end = 0; end < 2; end++) {
-        const struct xml_node *link = xml_find_child(reader, node, ends[end]);
-        const char *name = link ? xml_find_attribute(reader, link, "link", true) : NULL;
+        const struct xml_element *link = urdf_child(reader, node, ends[end]);
+        const char *name = link ? urdf_attribute(reader, link, "link", true) : NULL;
         if (!link)
-            xml_refuse(reader, node->line, "there is no <%s>", ends[end]);
+            urdf_refuse(reader, node, "there is no <%s>", ends[end]);
         else if (name && !utf8_is_text(name))
-            xml_refuse(reader, link->line, "<%s>: the link '%.80s' has control characters",
-                       ends[end], name);
+            urdf_refuse(reader, link, "<%s>: the link '%.80s' has control characters", ends[end],
+                        name);
         joint.link_names[end] = reader->failed ? NULL : name;
     }
     if (axis)
         read_axis(reader, axis, &joint);
     if (mimic && joint.type != ROBOT_FIXED) {
-        joint.mimic_name = xml_find_attribute(reader, mimic, "joint", true);
+        joint.mimic_name = urdf_attribute(reader, mimic, "joint", true);
         read_numbers(reader, mimic, "multiplier", false, 1, &joint.multiplier);
         read_numbers(reader, mimic, "offset", false, 1, &joint.offset);
         joint.mimic_name = reader->failed ? NULL : joint.mimic_name;
@@ -253,10 +252,10 @@ static void read_joint(struct xml_reader *reader, const struct xml_node *node)
             read_numbers(reader, limit, "lower", false, 1, &joint.limit[0]);
             read_numbers(reader, limit, "upper", false, 1, &joint.limit[1]);
         } else {
-            xml_refuse(reader, node->line, "there is no <limit>, which a joint of this type needs");
+            urdf_refuse(reader, node, "there is no <limit>, which a joint of this type needs");
         }
         if (!(joint.limit[0] <= joint.limit[1]))
-            xml_refuse(reader, limit->line, "<limit>: lower is above upper");
+            urdf_refuse(reader, limit, "<limit>: lower is above upper");
     }
     robot->joints = allocate_grow(robot->joints, &robot->joint_capacity, robot->joint_count + 1,
                                   sizeof *robot->joints);
@@ -265,23 +264,24 @@ static void read_joint(struct xml_reader *reader, const struct xml_node *node)
 
 /* ---- The file ---- */
 
-static void read_robot(struct xml_reader *reader, const struct xml_node *robot)
+static void read_robot(struct urdf_reader *reader, const struct xml_element *robot)
 {
     static const char *const srdf[] = {"group", "group_state", "virtual_joint",
                                        "disable_collisions"};
     bool found = false;
     if (!xml_is(robot, "robot"))
-        xml_refuse(reader, robot->line,
-                   "expected <robot>, found <%.64s>: SDF and others are not supported: give the "
-                   "robot as URDF",
-                   robot->name);
-    for (const struct xml_node *node = robot->child; node && !reader->failed; node = node->next) {
+        urdf_refuse(reader, robot,
+                    "expected <robot>, found <%.64s>: SDF and others are not supported: give the "
+                    "robot as URDF",
+                    robot->name);
+    for (const struct xml_element *node = robot->child; node && !reader->failed;
+         node = node->next) {
         for (size_t i = 0; i < sizeof srdf / sizeof *srdf; i++)
             if (xml_is(node, srdf[i]))
-                xml_refuse(reader, node->line,
-                           "<%s>: this is SRDF: give it by --srdf, and the "
-                           "robot as URDF",
-                           node->name);
+                urdf_refuse(reader, node,
+                            "<%s>: this is SRDF: give it by --srdf, and the "
+                            "robot as URDF",
+                            node->name);
         if (reader->failed)
             return;
         found = found || xml_is(node, "link");
@@ -293,15 +293,15 @@ static void read_robot(struct xml_reader *reader, const struct xml_node *robot)
         reader->failed = false; /* the others are read too */
     }
     if (!found)
-        xml_refuse(reader, robot->line, "<robot> has no <link>");
+        urdf_refuse(reader, robot, "<robot> has no <link>");
 }
 
 bool robot_read(const char *path, struct robot *out)
 {
-    struct xml_reader reader;
+    struct urdf_reader reader;
     *out = (struct robot){.path = strcmp(path, "-") == 0 ? "standard input" : path};
-    if (!xml_read(&reader, out, path))
+    if (!urdf_open(&reader, out, path))
         return false;
-    read_robot(&reader, reader.document.child);
+    read_robot(&reader, reader.root);
     return robot_connect(out, !reader.bad);
 }

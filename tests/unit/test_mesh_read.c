@@ -642,14 +642,11 @@ static void collada_is_read(void **state)
         "<triangles count='1'>" DAE_VERTEX "<p>3 2 1</p></triangles>",
         "<polylist count='2'>" DAE_VERTEX "<vcount>3 3</vcount><p>0 1 2 3 2 1</p></polylist>",
         "<polygons count='2'>" DAE_VERTEX "<p>0 1 2</p><p>3 2 1</p></polygons>",
-        "<trifans count='2'>" DAE_VERTEX "<p>0 1 2</p><p>3 2 1</p></trifans>",
     };
     static const char *const polygons[] = {
         "<polylist count='1'>" DAE_VERTEX "<vcount>4</vcount><p>0 1 3 2</p></polylist>",
-        "<polygons count='1'>" DAE_VERTEX "<p>0 1 3 2</p></polygons>",
-        "<trifans count='1'>" DAE_VERTEX "<p>0 1 3 2</p></trifans>",
-        "<tristrips count='1'>" DAE_VERTEX "<p>0 1 2 3</p></tristrips>"};
-    static const unsigned fan[][3] = {{0, 1, 3}, {0, 3, 2}}, strip[][3] = {{0, 1, 2}, {2, 1, 3}};
+        "<polygons count='1'>" DAE_VERTEX "<p>0 1 3 2</p></polygons>"};
+    static const unsigned fan[][3] = {{0, 1, 3}, {0, 3, 2}};
     struct file *file = malloc(sizeof *file);
     for (size_t i = 0; i < COUNT(primitives) + COUNT(polygons); i++) {
         const size_t k = i - COUNT(primitives);
@@ -664,11 +661,11 @@ static void collada_is_read(void **state)
         if (!mesh_parse(file->bytes, file->size, "a.stl", MESH_POLYGONS, &mesh, error))
             fail_msg("%zu: %s", i, error);
         assert_true(mesh.unit == 0);
-        expect_mesh(mesh, 4, square, 2, i < COUNT(primitives) ? halves : k < 3 ? fan : strip);
+        expect_mesh(mesh, 4, square, 2, i < COUNT(primitives) ? halves : fan);
         /* Faces of four vertices are refused where triangles are expected. */
         const bool triangles =
             mesh_parse(file->bytes, file->size, "", MESH_TRIANGLES, &mesh, error);
-        assert_true(triangles == (i < COUNT(primitives) || k >= 2));
+        assert_true(triangles == (i < COUNT(primitives)));
         mesh_free(&mesh);
     }
     free(file);
@@ -750,6 +747,7 @@ static void bad_collada_is_refused(void **state)
          "line 6"},
         {"<polylist count='1'>" DAE_VERTEX "<vcount>2</vcount>\n<p>0 1</p></polylist>", "line 6"},
         {"<polygons count='1'>" DAE_VERTEX "<p>0 1 2</p>\n<ph/></polygons>", "line 6"},
+        {"\n<tristrips count='1'>" DAE_VERTEX "<p>0 1 2 3</p></tristrips>", "line 6"},
         {"<polygons count='2'>" DAE_VERTEX "<p>0 1 2</p></polygons>", "line 5"},
         {"<polygons count='1'>" DAE_VERTEX "<p/></polygons>", "line 5"},
     };
