@@ -5,6 +5,7 @@
 #include "turn.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,24 +41,27 @@ void robot_lines_clear(struct robot_lines *lines)
     *lines = (struct robot_lines){.out = NULL};
 }
 
-bool robot_refuse_list(struct robot *robot, const char *path, unsigned long line, const char *kind,
-                       const char *name, const char *format, va_list list)
+void robot_begin(struct robot *robot, const char *kind, const char *name)
 {
-    char text[ROBOT_TEXT_MAX];
-    vsnprintf(text, sizeof text, format, list);
-    if (robot->error_count++ < ROBOT_ERRORS_MAX)
-        robot_say(&robot->errors, "%s: line %lu%s%s%s%s%s: %s", path, line, kind ? ": " : "",
-                  kind ? kind : "", kind ? " '" : "", kind ? name : "", kind ? "'" : "", text);
-    return false;
+    robot->kind = kind;
+    robot->within = name;
+    robot->failed = false;
 }
 
-bool robot_refuse(struct robot *robot, const char *path, unsigned long line, const char *kind,
-                  const char *name, const char *format, ...)
+bool robot_refuse(struct robot *robot, unsigned long line, const char *format, ...)
 {
+    char text[ROBOT_TEXT_MAX];
+    const char *kind = robot->kind ? robot->kind : "", *name = robot->kind ? robot->within : "";
     va_list list;
+    if (robot->failed)
+        return false;
+    robot->failed = robot->bad = true;
     va_start(list, format);
-    robot_refuse_list(robot, path, line, kind, name, format, list);
+    vsnprintf(text, sizeof text, format, list);
     va_end(list);
+    if (robot->error_count++ < ROBOT_ERRORS_MAX)
+        robot_say(&robot->errors, *kind ? "%s: line %lu: %s '%s': %s" : "%s: line %lu%s%s: %s",
+                  robot->file, line, kind, name, text);
     return false;
 }
 
@@ -113,21 +117,22 @@ void robot_clear(struct robot *robot)
 static bool connect_joint(struct robot *robot, struct robot_joint *joint)
 {
     static const char *const ends[2] = {"parent", "child"};
+    robot_begin(robot, "joint", joint->name->name);
     for (int end = 0; end < 2; end++) {
         const char *name = joint->link_names[end];
         const struct robot_name *found = NULL;
         if (name)
             HASH_FIND(hh, robot->link_names, name, strlen(name), found);
         if (name && !found)
-            return robot_refuse(robot, robot->path, joint->name->line, "joint", joint->name->name,
-                                "its %s '%s' is not a link of the file", ends[end], name);
+            return robot_refuse(robot, joint->name->line, "its %s '%s' is not a link of the file",
+                                ends[end], name);
         if (!found)
             return false; /* has been refused */
         joint->link[end] = found->index;
     }
     struct robot_link *child = &robot->links[joint->link[1]];
     if (child->joint != ROBOT_ROOT)
-        return robot_refuse(robot, robot->path, joint->name->line, "joint", joint->name->name,
+        return robot_refuse(robot, joint->name->line,
                             "its child '%s' is already the child of joint '%s'", child->name->name,
                             robot->joints[child->joint].name->name);
     child->joint = joint->name->index;
@@ -142,8 +147,8 @@ static bool connect_mimic(struct robot *robot, struct robot_joint *joint)
         joint->mimic = found->name->index;
         return true;
     }
-    return robot_refuse(robot, robot->path, joint->name->line, "joint", joint->name->name,
-                        "<mimic>: '%.64s' is %s", joint->mimic_name,
+    robot->failed = false;
+    return robot_refuse(robot, joint->name->line, "<mimic>: '%.64s' is %s", joint->mimic_name,
                         !found ? "not a joint of the file"
                         : !found->mimic_name
                             ? "a fixed joint"
@@ -164,13 +169,14 @@ static bool find_depths(struct robot *robot, size_t *depth)
         const struct robot_link *top = &robot->links[up];
         if (top->joint != ROBOT_ROOT) { /* a path this long runs into a cycle */
             const struct robot_name *joint = robot->joints[top->joint].name;
-            return robot_refuse(robot, robot->path, joint->line, "joint", joint->name,
+            robot_begin(robot, "joint", joint->name);
+            return robot_refuse(robot, joint->line,
                                 "the joints from '%s' lead back to it: expected a tree",
                                 top->name->name);
         }
         if (i > 0 && up != root)
             return robot_refuse(
-                robot, robot->path, top->name->line, NULL, NULL,
+                robot, top->name->line,
                 "link '%s' has no parent, and neither has link '%s': expected one root: "
                 "connect them by a fixed joint",
                 top->name->name, robot->links[root].name->name);
@@ -179,16 +185,18 @@ static bool find_depths(struct robot *robot, size_t *depth)
     return true;
 }
 
-bool robot_connect(struct robot *robot, bool whole)
+bool robot_connect(struct robot *robot)
 {
     const size_t count = robot->link_count;
     size_t *depth = scene_alloc(&robot->memory, count, sizeof *depth), placed = 0;
+    bool good = !robot->bad;
     for (size_t i = 0; i < robot->joint_count; i++) {
         struct robot_joint *joint = &robot->joints[i];
-        whole = connect_joint(robot, joint) && whole;
-        whole = (!joint->mimic_name || connect_mimic(robot, joint)) && whole;
+        good = connect_joint(robot, joint) && good;
+        good = (!joint->mimic_name || connect_mimic(robot, joint)) && good;
     }
-    if (!whole || !find_depths(robot, depth))
+    robot_begin(robot, NULL, NULL);
+    if (!good || !find_depths(robot, depth))
         return false;
     robot->order = scene_alloc(&robot->memory, count, sizeof *robot->order);
     for (size_t d = 0; placed < count; d++)

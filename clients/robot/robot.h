@@ -12,7 +12,6 @@
 #include "pose.h"
 #include "scene.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 
 /* Lines of text: errors, or notes. All 0: none. */
@@ -91,6 +90,11 @@ struct robot {
     struct robot_lines errors;
     size_t error_count;
     struct owned_scene memory; /* of texts and entries of tables */
+    /* What is being read: its file, and the link or joint, as "link" and its name, or NULL. Only
+     * the first error of an element is reported: until failed is set to false, there is no other,
+     * and results are not used. bad: there was an error. */
+    const char *file, *kind, *within;
+    bool failed, bad;
 };
 
 /* Reads a file; "-" is standard input. Returns false after errors. links and elements then hold
@@ -99,20 +103,19 @@ struct robot {
 bool robot_read(const char *path, struct robot *out);
 void robot_clear(struct robot *robot);
 
-/* Adds an error; errors beyond ROBOT_ERRORS_MAX are only counted. path: of the file. kind: "link"
- * or "joint", with this name; NULL: neither. Returns false. */
+/* Adds an error of what is being read, unless it has failed; errors beyond ROBOT_ERRORS_MAX are only
+ * counted. Returns false. */
 enum { ROBOT_ERRORS_MAX = 100, ROBOT_TEXT_MAX = 8192 };
-__attribute__((format(printf, 6, 7))) bool robot_refuse(struct robot *robot, const char *path,
-                                                        unsigned long line, const char *kind,
-                                                        const char *name, const char *format, ...);
+__attribute__((format(printf, 3, 4))) bool robot_refuse(struct robot *robot, unsigned long line,
+                                                        const char *format, ...);
 
-bool robot_refuse_list(struct robot *robot, const char *path, unsigned long line, const char *kind,
-                       const char *name, const char *format, va_list list);
+/* Sets what is being read. */
+void robot_begin(struct robot *robot, const char *kind, const char *name);
 
-/* Connects links and joints by their names, and sets order. whole: false if some were refused, and
- * only names are checked. Returns false after an error: they are not a tree. Called by
+/* Connects links and joints by their names, and sets order; if the robot is bad, only checks names.
+ * Returns false after an error: they are not a tree. Called by
  * robot_read(). Cost: O(link_count * depth of the tree). */
-bool robot_connect(struct robot *robot, bool whole);
+bool robot_connect(struct robot *robot);
 
 /* Adds a copy of a name to a table. If the name is in the table already, returns NULL, and *first
  * is its entry. */

@@ -9,7 +9,6 @@
 #include "turned_box.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +17,6 @@
 /* The frames of the body under construction. */
 struct frames {
     struct robot *robot;
-    const struct robot_link *link;
     const struct robot_body_options *options;
     struct owned_scene *scene;
     struct robot_meshes *meshes;
@@ -27,19 +25,6 @@ struct frames {
     bool *is_mesh;             /* owned, [count]: a hull whose vertices may be exchanged */
     size_t count, capacity, mesh_capacity;
 };
-
-/* Adds an error of an element. Returns false. */
-__attribute__((format(printf, 3, 4))) static bool refuse(const struct frames *frames,
-                                                         const struct robot_element *element,
-                                                         const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    robot_refuse_list(frames->robot, frames->robot->path, element->line, "link",
-                      frames->link->name->name, format, list);
-    va_end(list);
-    return false;
-}
 
 static void add_frame(struct frames *frames, const struct given_frame *given)
 {
@@ -167,8 +152,9 @@ static char *find_mesh(const struct frames *frames, const struct robot_element *
     const size_t name = strcspn(file, "/"); /* of the package; "", "." and ".." are refused */
     if (packaged ? strncmp(file, "..", name) == 0 || strlen(file + name) < 2
                  : strstr(file, "://") || strchr(file, '\\')) {
-        refuse(frames, element, "%s: expected a path with '/', file://PATH or package://NAME/PATH",
-               element->file);
+        robot_refuse(frames->robot, element->line,
+                     "%s: expected a path with '/', file://PATH or package://NAME/PATH",
+                     element->file);
         return NULL;
     }
     if (!packaged)
@@ -177,11 +163,12 @@ static char *find_mesh(const struct frames *frames, const struct robot_element *
     if (!path)
         path = find_above(frames->robot->path, file);
     if (!path)
-        refuse(frames, element,
-               "%s: not found%s%s: no folder above the robot is called %.*s, or has a package.xml "
-               "with this name: give the folders that packages are in by --package-path",
-               element->file, folders ? " in --package-path " : "", folders ? folders : "",
-               (int) name, file);
+        robot_refuse(
+            frames->robot, element->line,
+            "%s: not found%s%s: no folder above the robot is called %.*s, or has a package.xml "
+            "with this name: give the folders that packages are in by --package-path",
+            element->file, folders ? " in --package-path " : "", folders ? folders : "", (int) name,
+            file);
     return path;
 }
 
@@ -225,7 +212,8 @@ static bool add_faces(struct frames *frames, const struct robot_element *element
     if (object > 0)
         snprintf(of, sizeof of, ": object %zu", object);
     if (status != FMB_OK)
-        return refuse(frames, element, "%s%s: %s", path, of, fmb_status_text((int) status));
+        return robot_refuse(frames->robot, element->line, "%s%s: %s", path, of,
+                            fmb_status_text((int) status));
     add_frame(frames, &(struct given_frame){FMB_HULL, true, 3 * found, vertex[0], radius});
     frames->is_mesh[frames->count - 1] = true;
     return true;
@@ -242,8 +230,8 @@ static bool add_objects(struct frames *frames, const struct robot_element *eleme
         good = add_faces(frames, element, path, i, mesh, i > 0 ? mesh->object[i - 1] : 0,
                          i < objects ? mesh->object[i] : mesh->face_count, used);
     free(used);
-    return good &&
-           (frames->count > before || refuse(frames, element, "%s: the mesh has no faces", path));
+    return good && (frames->count > before ||
+                    robot_refuse(frames->robot, element->line, "%s: the mesh has no faces", path));
 }
 
 static bool add_mesh(struct frames *frames, const struct robot_element *element)
@@ -255,7 +243,7 @@ static bool add_mesh(struct frames *frames, const struct robot_element *element)
         return false;
     const bool good = mesh_read(path, MESH_POLYGONS, &mesh, error)
                           ? add_objects(frames, element, path, &mesh)
-                          : refuse(frames, element, "%s: %s", path, error);
+                          : robot_refuse(frames->robot, element->line, "%s: %s", path, error);
     if (mesh.unit > 0 && mesh.unit != 1 && frames->meshes->scaled++ == 0) {
         frames->meshes->first_file = element->file;
         frames->meshes->first_unit = mesh.unit;
@@ -328,17 +316,17 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
     const size_t bytes = scene_body_bytes(frames->frame, frames->count);
     size_t bad;
     if (frames->options->bytes_max > 0 && bytes > frames->options->bytes_max) {
-        refuse(frames, first,
-               "%zu frames take %zu bytes in a message, which has space for %d: simplify its "
-               "meshes, or give fewer --sides",
-               frames->count, bytes, (int) frames->options->bytes_max);
+        robot_refuse(frames->robot, first->line,
+                     "%zu frames take %zu bytes in a message, which has space for %d: simplify its "
+                     "meshes, or give fewer --sides",
+                     frames->count, bytes, (int) frames->options->bytes_max);
         return NULL;
     }
     if (status == FMB_OK)
         status = scene_make_body(frames->scene, frames->frame, frames->count, &body, &bad);
     if (status == FMB_OK)
         return body;
-    refuse(frames, first, "%s", fmb_status_text((int) status));
+    robot_refuse(frames->robot, first->line, "%s", fmb_status_text((int) status));
     return NULL;
 }
 
@@ -347,8 +335,7 @@ const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin)
 {
-    struct frames frames = {
-        .robot = robot, .link = link, .options = options, .scene = scene, .meshes = meshes};
+    struct frames frames = {.robot = robot, .options = options, .scene = scene, .meshes = meshes};
     const struct robot_element *element = &robot->elements[link->element];
     const struct fmb_body *body = NULL;
     bool good = true;
@@ -358,6 +345,7 @@ const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *
         const bool none =
             pose_is_translation(at) && at->p[0] == 0 && at->p[1] == 0 && at->p[2] == 0;
         frames.placed = link->element_count == 1 || none ? NULL : at;
+        robot_begin(robot, "link", link->name->name);
         good = add_element(&frames, &element[i]) && good;
     }
     if (good)

@@ -11,7 +11,6 @@
 #include <string.h>
 
 struct srdf {
-    struct urdf_reader xml;
     struct fmb_robot *robot;
     size_t known;                /* names of links that the robot has */
     struct robot_name *unknown;  /* table of other names; entries belong to the tree */
@@ -23,7 +22,7 @@ struct srdf {
 static unsigned read_body(struct srdf *srdf, const struct xml_element *node, const char *attribute)
 {
     struct robot *tree = &srdf->robot->tree;
-    const char *name = urdf_attribute(&srdf->xml, node, attribute, true);
+    const char *name = urdf_attribute(tree, node, attribute, true);
     const struct robot_name *found, *first;
     if (!name)
         return ROBOT_NO_BODY;
@@ -56,12 +55,14 @@ static void read_default(struct srdf *srdf, const struct xml_element *node)
 
 static void read_elements(struct srdf *srdf, const struct xml_element *root)
 {
-    struct urdf_reader *xml = &srdf->xml;
+    struct robot *tree = &srdf->robot->tree;
     if (!xml_is(root, "robot"))
-        urdf_refuse(xml, root, "expected <robot>, found <%.64s>: give a file of SRDF", root->name);
-    for (const struct xml_element *node = root->child; node && !xml->failed; node = node->next) {
+        robot_refuse(tree, root->line, "expected <robot>, found <%.64s>: give a file of SRDF",
+                     root->name);
+    for (const struct xml_element *node = root->child; node && !tree->failed; node = node->next) {
         if (xml_is(node, "link") || xml_is(node, "joint")) {
-            urdf_refuse(xml, node, "<%s>: this is URDF: --srdf takes a file of SRDF", node->name);
+            robot_refuse(tree, node->line, "<%s>: this is URDF: --srdf takes a file of SRDF",
+                         node->name);
             return;
         }
         if (xml_is(node, "disable_collisions"))
@@ -70,7 +71,7 @@ static void read_elements(struct srdf *srdf, const struct xml_element *root)
             read_pair(srdf, node, &srdf->robot->enabled);
         else if (xml_is(node, "disable_default_collisions"))
             read_default(srdf, node);
-        xml->failed = false; /* the others are read too */
+        tree->failed = false; /* the others are read too */
     }
 }
 
@@ -85,7 +86,7 @@ static bool add_defaults(struct srdf *srdf)
                 continue;
             if (srdf->disabled.count == PAIRS_MAX) {
                 robot_say(&srdf->robot->tree.errors,
-                          "%s: <disable_default_collisions>: more than %d pairs", srdf->xml.path,
+                          "%s: <disable_default_collisions>: more than %d pairs", srdf->robot->srdf,
                           (int) PAIRS_MAX);
                 return false;
             }
@@ -106,15 +107,19 @@ static size_t count_unlisted(const struct fmb_robot *robot, const struct robot_p
 bool robot_read_srdf(struct fmb_robot *robot)
 {
     struct srdf srdf = {.robot = robot};
-    bool good = urdf_open(&srdf.xml, &robot->tree, robot->srdf);
-    if (good)
-        read_elements(&srdf, srdf.xml.root);
+    struct robot *tree = &robot->tree;
+    const bool before = tree->bad;
+    tree->bad = false;
+    const struct xml_element *root = urdf_open(tree, robot->srdf);
+    if (root)
+        read_elements(&srdf, root);
     robot->unknown_count = HASH_COUNT(srdf.unknown);
     HASH_CLEAR(hh, srdf.unknown);
-    good = good && !srdf.xml.bad;
+    bool good = !tree->bad;
+    tree->bad = before;
     if (good && srdf.known == 0 && robot->unknown_count > 0) {
         robot_say(&robot->tree.errors,
-                  "%s: no link that it names is one of %s: is it of another robot?", srdf.xml.path,
+                  "%s: no link that it names is one of %s: is it of another robot?", robot->srdf,
                   robot->tree.path);
         good = false;
     }

@@ -13,29 +13,28 @@
 /* ---- Attributes ---- */
 
 /* Reads count numbers. A missing attribute leaves out unchanged. */
-static void read_numbers(struct urdf_reader *reader, const struct xml_element *node,
-                         const char *name, bool required, int count, double *out)
+static void read_numbers(struct robot *robot, const struct xml_element *node, const char *name,
+                         bool required, int count, double *out)
 {
-    const char *value = urdf_attribute(reader, node, name, required);
+    const char *value = urdf_attribute(robot, node, name, required);
     if (value && !robot_numbers(value, count, out))
-        urdf_refuse(reader, node, "<%s>: %s is '%.64s', expected %d finite number%s", node->name,
-                    name, value, count, count > 1 ? "s, separated by spaces" : "");
+        robot_refuse(robot, node->line, "<%s>: %s is '%.64s', expected %d finite number%s",
+                     node->name, name, value, count, count > 1 ? "s, separated by spaces" : "");
 }
 
-static void read_sizes(struct urdf_reader *reader, const struct xml_element *node, const char *name,
+static void read_sizes(struct robot *robot, const struct xml_element *node, const char *name,
                        int count, double *out)
 {
-    read_numbers(reader, node, name, true, count, out);
+    read_numbers(robot, node, name, true, count, out);
     for (int i = 0; i < count; i++)
         if (out[i] < 0)
-            urdf_refuse(reader, node, "<%s>: %s is negative", node->name, name);
+            robot_refuse(robot, node->line, "<%s>: %s is negative", node->name, name);
 }
 
 /* Reads a pose: xyz, and rpy or, in URDF 1.1, quat_xyzw, which may have any length. */
-static void read_origin(struct urdf_reader *reader, const struct xml_element *parent,
-                        struct pose *out)
+static void read_origin(struct robot *robot, const struct xml_element *parent, struct pose *out)
 {
-    const struct xml_element *node = urdf_child(reader, parent, "origin");
+    const struct xml_element *node = urdf_child(robot, parent, "origin");
     double rpy[3] = {0}, q[4] = {0};
     bool has_rpy = false, has_q = false;
     *out = POSE_IDENTITY;
@@ -46,22 +45,23 @@ static void read_origin(struct urdf_reader *reader, const struct xml_element *pa
         has_q = has_q || strcmp(at[0], "quat_xyzw") == 0;
         if (strcmp(at[0], "xyz") != 0 && strcmp(at[0], "rpy") != 0 &&
             strcmp(at[0], "quat_xyzw") != 0)
-            urdf_refuse(reader, node,
-                        "<origin>: %.64s is not supported: give xyz, and rpy or "
-                        "quat_xyzw",
-                        at[0]);
+            robot_refuse(robot, node->line,
+                         "<origin>: %.64s is not supported: give xyz, and rpy or "
+                         "quat_xyzw",
+                         at[0]);
     }
-    read_numbers(reader, node, "xyz", false, 3, out->p);
-    read_numbers(reader, node, "rpy", false, 3, rpy);
-    read_numbers(reader, node, "quat_xyzw", false, 4, q);
+    read_numbers(robot, node, "xyz", false, 3, out->p);
+    read_numbers(robot, node, "rpy", false, 3, rpy);
+    read_numbers(robot, node, "quat_xyzw", false, 4, q);
     for (int i = 0; i < 3; i++)
         if (fabs(rpy[i]) > TURN_RADIANS_MAX)
-            urdf_refuse(reader, node, "<origin>: rpy is beyond %.0f radians", TURN_RADIANS_MAX);
+            robot_refuse(robot, node->line, "<origin>: rpy is beyond %.0f radians",
+                         TURN_RADIANS_MAX);
     if (has_q && has_rpy)
-        urdf_refuse(reader, node, "<origin> has both rpy and quat_xyzw");
+        robot_refuse(robot, node->line, "<origin> has both rpy and quat_xyzw");
     else if (has_q && q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0)
-        urdf_refuse(reader, node, "<origin>: quat_xyzw is 0, which is no rotation");
-    if (reader->failed)
+        robot_refuse(robot, node->line, "<origin>: quat_xyzw is 0, which is no rotation");
+    if (robot->failed)
         return;
     if (has_q) {
         memcpy(out->q, (const double[]){q[3], q[0], q[1], q[2]}, sizeof out->q);
@@ -72,55 +72,55 @@ static void read_origin(struct urdf_reader *reader, const struct xml_element *pa
 }
 
 /* Begins to read a link or a joint: adds its name to the table. Returns NULL after an error. */
-static const struct robot_name *begin(struct urdf_reader *reader, const struct xml_element *node,
+static const struct robot_name *begin(struct robot *robot, const struct xml_element *node,
                                       struct robot_name **table)
 {
-    const char *name = urdf_attribute(reader, node, "name", true);
+    const char *name = urdf_attribute(robot, node, "name", true);
     const struct robot_name *first;
     struct robot_name *added = NULL;
     if (!name)
         return NULL;
     if (HASH_COUNT(*table) == ROBOT_COUNT_MAX)
-        urdf_refuse(reader, node, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX, node->name);
+        robot_refuse(robot, node->line, "more than %d <%s> elements", (int) ROBOT_COUNT_MAX,
+                     node->name);
     else if (!query_name_ok(name))
-        urdf_refuse(reader, node,
-                    "<%s>: the name '%.80s' has more than %d bytes, or is not UTF-8 without "
-                    "control characters",
-                    node->name, name, (int) QUERY_NAME_MAX);
-    else if (!(added = robot_add_name(reader->robot, table, name, &first)))
-        urdf_refuse(reader, node, "there is already a %s '%s', in line %lu", node->name, name,
-                    first->line);
+        robot_refuse(robot, node->line,
+                     "<%s>: the name '%.80s' has more than %d bytes, or is not UTF-8 without "
+                     "control characters",
+                     node->name, name, (int) QUERY_NAME_MAX);
+    else if (!(added = robot_add_name(robot, table, name, &first)))
+        robot_refuse(robot, node->line, "there is already a %s '%s', in line %lu", node->name, name,
+                     first->line);
     if (!added)
         return NULL;
     added->line = node->line;
-    reader->kind = node->name;
-    reader->within = added->name;
+    robot_begin(robot, node->name, added->name);
     return added;
 }
 
 /* ---- Links ---- */
 
-static void read_shape(struct urdf_reader *reader, const struct xml_element *node,
+static void read_shape(struct robot *robot, const struct xml_element *node,
                        struct robot_element *out)
 {
     if (xml_is(node, "box")) {
         out->shape = ROBOT_BOX;
-        read_sizes(reader, node, "size", 3, out->size);
+        read_sizes(robot, node, "size", 3, out->size);
     } else if (xml_is(node, "cylinder") || xml_is(node, "capsule")) {
         out->shape = xml_is(node, "cylinder") ? ROBOT_CYLINDER : ROBOT_CAPSULE;
-        read_sizes(reader, node, "radius", 1, &out->size[0]);
-        read_sizes(reader, node, "length", 1, &out->size[1]);
+        read_sizes(robot, node, "radius", 1, &out->size[0]);
+        read_sizes(robot, node, "length", 1, &out->size[1]);
     } else if (xml_is(node, "sphere")) {
         out->shape = ROBOT_CAPSULE;
-        read_sizes(reader, node, "radius", 1, out->size);
+        read_sizes(robot, node, "radius", 1, out->size);
     } else if (xml_is(node, "mesh")) {
         out->shape = ROBOT_MESH;
-        out->file = urdf_attribute(reader, node, "filename", true);
+        out->file = urdf_attribute(robot, node, "filename", true);
         out->size[0] = out->size[1] = out->size[2] = 1;
-        read_numbers(reader, node, "scale", false, 3, out->size);
+        read_numbers(robot, node, "scale", false, 3, out->size);
     } else {
-        urdf_refuse(reader, node, "<%.64s>: expected a box, cylinder, sphere, capsule or mesh",
-                    node->name);
+        robot_refuse(robot, node->line,
+                     "<%.64s>: expected a box, cylinder, sphere, capsule or mesh", node->name);
     }
 }
 
@@ -133,41 +133,39 @@ static const struct xml_element *skip_foreign(const struct xml_element *node)
     return node;
 }
 
-static void read_collision(struct urdf_reader *reader, const struct xml_element *node)
+static void read_collision(struct robot *robot, const struct xml_element *node)
 {
-    struct robot *robot = reader->robot;
-    const struct xml_element *geometry = urdf_child(reader, node, "geometry");
+    const struct xml_element *geometry = urdf_child(robot, node, "geometry");
     const struct xml_element *first = geometry ? geometry->child : NULL, *own = skip_foreign(first);
     const struct xml_element *second = own ? skip_foreign(own->next) : NULL,
                              *shape = own ? own : first;
     if (robot->element_count == ROBOT_COUNT_MAX)
-        urdf_refuse(reader, node, "more than %d <collision> elements", (int) ROBOT_COUNT_MAX);
+        robot_refuse(robot, node->line, "more than %d <collision> elements", (int) ROBOT_COUNT_MAX);
     if (!shape)
-        urdf_refuse(reader, node, "<collision> has no <geometry> with a shape");
+        robot_refuse(robot, node->line, "<collision> has no <geometry> with a shape");
     else if (second)
-        urdf_refuse(reader, second, "<%.64s>: there is already a shape", second->name);
-    if (reader->failed)
+        robot_refuse(robot, second->line, "<%.64s>: there is already a shape", second->name);
+    if (robot->failed)
         return;
     robot->elements = allocate_grow(robot->elements, &robot->element_capacity,
                                     robot->element_count + 1, sizeof *robot->elements);
     struct robot_element *element = &robot->elements[robot->element_count];
     *element = (struct robot_element){.line = node->line};
-    read_origin(reader, node, &element->origin);
-    read_shape(reader, shape, element);
-    robot->element_count += !reader->failed;
+    read_origin(robot, node, &element->origin);
+    read_shape(robot, shape, element);
+    robot->element_count += !robot->failed;
 }
 
-static void read_link(struct urdf_reader *reader, const struct xml_element *node)
+static void read_link(struct robot *robot, const struct xml_element *node)
 {
-    struct robot *robot = reader->robot;
-    const struct robot_name *name = begin(reader, node, &robot->link_names);
+    const struct robot_name *name = begin(robot, node, &robot->link_names);
     const size_t first = robot->element_count;
     if (!name)
         return;
     for (const struct xml_element *child = node->child; child; child = child->next)
         if (xml_is(child, "collision")) {
-            read_collision(reader, child);
-            reader->failed = false; /* the others are read too */
+            read_collision(robot, child);
+            robot->failed = false; /* the others are read too */
         }
     robot->links = allocate_grow(robot->links, &robot->link_capacity, robot->link_count + 1,
                                  sizeof *robot->links);
@@ -180,29 +178,27 @@ static void read_link(struct urdf_reader *reader, const struct xml_element *node
 
 /* ---- Joints ---- */
 
-static void read_type(struct urdf_reader *reader, const struct xml_element *node,
-                      struct robot_joint *out)
+static void read_type(struct robot *robot, const struct xml_element *node, struct robot_joint *out)
 {
     static const char *const types[] = {"revolute", "continuous", "prismatic", "fixed"};
-    const char *type = urdf_attribute(reader, node, "type", true);
+    const char *type = urdf_attribute(robot, node, "type", true);
     for (int i = 0; type && i < 4; i++)
         if (strcmp(types[i], type) == 0) {
             out->type = (enum robot_joint_type) i;
             return;
         }
-    urdf_refuse(
-        reader, node,
+    robot_refuse(
+        robot, node->line,
         "its type is '%.64s', expected revolute, continuous, prismatic or fixed (in place of "
         "planar or floating: a chain of these)",
         type ? type : "");
 }
 
 /* Components are first divided by the largest one, so that the length does not overflow. */
-static void read_axis(struct urdf_reader *reader, const struct xml_element *node,
-                      struct robot_joint *out)
+static void read_axis(struct robot *robot, const struct xml_element *node, struct robot_joint *out)
 {
     double most = 0, square = 0;
-    read_numbers(reader, node, "xyz", true, 3, out->axis);
+    read_numbers(robot, node, "xyz", true, 3, out->axis);
     for (int i = 0; i < 3; i++)
         most = fmax(most, fabs(out->axis[i]));
     for (int i = 0; i < 3; i++)
@@ -210,52 +206,52 @@ static void read_axis(struct urdf_reader *reader, const struct xml_element *node
     for (int i = 0; i < 3; i++)
         out->axis[i] = out->axis[i] / most / sqrt(square);
     if (most == 0 && out->type != ROBOT_FIXED)
-        urdf_refuse(reader, node, "<axis>: xyz is 0");
+        robot_refuse(robot, node->line, "<axis>: xyz is 0");
 }
 
-static void read_joint(struct urdf_reader *reader, const struct xml_element *node)
+static void read_joint(struct robot *robot, const struct xml_element *node)
 {
     static const char *const ends[2] = {"parent", "child"};
-    struct robot *robot = reader->robot;
-    struct robot_joint joint = {.name = begin(reader, node, &robot->joint_names),
+    struct robot_joint joint = {.name = begin(robot, node, &robot->joint_names),
                                 .axis = {1, 0, 0},
                                 .limit = {-INFINITY, INFINITY},
                                 .multiplier = 1};
     if (!joint.name)
         return;
-    read_type(reader, node, &joint);
-    read_origin(reader, node, &joint.origin);
-    const struct xml_element *axis = urdf_child(reader, node, "axis"),
-                             *limit = urdf_child(reader, node, "limit"),
-                             *mimic = urdf_child(reader, node, "mimic");
+    read_type(robot, node, &joint);
+    read_origin(robot, node, &joint.origin);
+    const struct xml_element *axis = urdf_child(robot, node, "axis"),
+                             *limit = urdf_child(robot, node, "limit"),
+                             *mimic = urdf_child(robot, node, "mimic");
     for (int end = 0; end < 2; end++) {
-        const struct xml_element *link = urdf_child(reader, node, ends[end]);
-        const char *name = link ? urdf_attribute(reader, link, "link", true) : NULL;
+        const struct xml_element *link = urdf_child(robot, node, ends[end]);
+        const char *name = link ? urdf_attribute(robot, link, "link", true) : NULL;
         if (!link)
-            urdf_refuse(reader, node, "there is no <%s>", ends[end]);
+            robot_refuse(robot, node->line, "there is no <%s>", ends[end]);
         else if (name && !utf8_is_text(name))
-            urdf_refuse(reader, link, "<%s>: the link '%.80s' has control characters", ends[end],
-                        name);
-        joint.link_names[end] = reader->failed ? NULL : name;
+            robot_refuse(robot, link->line, "<%s>: the link '%.80s' has control characters",
+                         ends[end], name);
+        joint.link_names[end] = robot->failed ? NULL : name;
     }
     if (axis)
-        read_axis(reader, axis, &joint);
+        read_axis(robot, axis, &joint);
     if (mimic && joint.type != ROBOT_FIXED) {
-        joint.mimic_name = urdf_attribute(reader, mimic, "joint", true);
-        read_numbers(reader, mimic, "multiplier", false, 1, &joint.multiplier);
-        read_numbers(reader, mimic, "offset", false, 1, &joint.offset);
-        joint.mimic_name = reader->failed ? NULL : joint.mimic_name;
+        joint.mimic_name = urdf_attribute(robot, mimic, "joint", true);
+        read_numbers(robot, mimic, "multiplier", false, 1, &joint.multiplier);
+        read_numbers(robot, mimic, "offset", false, 1, &joint.offset);
+        joint.mimic_name = robot->failed ? NULL : joint.mimic_name;
     }
     if (joint.type == ROBOT_REVOLUTE || joint.type == ROBOT_PRISMATIC) {
         joint.limit[0] = joint.limit[1] = 0;
         if (limit) {
-            read_numbers(reader, limit, "lower", false, 1, &joint.limit[0]);
-            read_numbers(reader, limit, "upper", false, 1, &joint.limit[1]);
+            read_numbers(robot, limit, "lower", false, 1, &joint.limit[0]);
+            read_numbers(robot, limit, "upper", false, 1, &joint.limit[1]);
         } else {
-            urdf_refuse(reader, node, "there is no <limit>, which a joint of this type needs");
+            robot_refuse(robot, node->line,
+                         "there is no <limit>, which a joint of this type needs");
         }
         if (!(joint.limit[0] <= joint.limit[1]))
-            urdf_refuse(reader, limit, "<limit>: lower is above upper");
+            robot_refuse(robot, limit->line, "<limit>: lower is above upper");
     }
     robot->joints = allocate_grow(robot->joints, &robot->joint_capacity, robot->joint_count + 1,
                                   sizeof *robot->joints);
@@ -264,44 +260,41 @@ static void read_joint(struct urdf_reader *reader, const struct xml_element *nod
 
 /* ---- The file ---- */
 
-static void read_robot(struct urdf_reader *reader, const struct xml_element *robot)
+static void read_robot(struct robot *robot, const struct xml_element *root)
 {
     static const char *const srdf[] = {"group", "group_state", "virtual_joint",
                                        "disable_collisions"};
     bool found = false;
-    if (!xml_is(robot, "robot"))
-        urdf_refuse(reader, robot,
-                    "expected <robot>, found <%.64s>: SDF and others are not supported: give the "
-                    "robot as URDF",
-                    robot->name);
-    for (const struct xml_element *node = robot->child; node && !reader->failed;
-         node = node->next) {
+    if (!xml_is(root, "robot"))
+        robot_refuse(robot, root->line,
+                     "expected <robot>, found <%.64s>: SDF and others are not supported: give the "
+                     "robot as URDF",
+                     root->name);
+    for (const struct xml_element *node = root->child; node && !robot->failed; node = node->next) {
         for (size_t i = 0; i < sizeof srdf / sizeof *srdf; i++)
             if (xml_is(node, srdf[i]))
-                urdf_refuse(reader, node,
-                            "<%s>: this is SRDF: give it by --srdf, and the "
-                            "robot as URDF",
-                            node->name);
-        if (reader->failed)
+                robot_refuse(robot, node->line,
+                             "<%s>: this is SRDF: give it by --srdf, and the "
+                             "robot as URDF",
+                             node->name);
+        if (robot->failed)
             return;
         found = found || xml_is(node, "link");
         if (xml_is(node, "link"))
-            read_link(reader, node);
+            read_link(robot, node);
         else if (xml_is(node, "joint"))
-            read_joint(reader, node);
-        reader->kind = NULL;
-        reader->failed = false; /* the others are read too */
+            read_joint(robot, node);
+        robot_begin(robot, NULL, NULL); /* the others are read too */
     }
     if (!found)
-        urdf_refuse(reader, robot, "<robot> has no <link>");
+        robot_refuse(robot, root->line, "<robot> has no <link>");
 }
 
 bool robot_read(const char *path, struct robot *out)
 {
-    struct urdf_reader reader;
     *out = (struct robot){.path = strcmp(path, "-") == 0 ? "standard input" : path};
-    if (!urdf_open(&reader, out, path))
-        return false;
-    read_robot(&reader, reader.root);
-    return robot_connect(out, !reader.bad);
+    const struct xml_element *root = urdf_open(out, path);
+    if (root)
+        read_robot(out, root);
+    return root && robot_connect(out);
 }
