@@ -103,8 +103,8 @@ struct robot {
 bool robot_read(const char *path, struct robot *out);
 void robot_clear(struct robot *robot);
 
-/* Adds an error of what is being read, unless it has failed; errors beyond ROBOT_ERRORS_MAX are only
- * counted. Returns false. */
+/* Adds an error of what is being read, unless it has failed; errors beyond ROBOT_ERRORS_MAX are
+ * only counted. Returns false. */
 enum { ROBOT_ERRORS_MAX = 100, ROBOT_TEXT_MAX = 8192 };
 __attribute__((format(printf, 3, 4))) bool robot_refuse(struct robot *robot, unsigned long line,
                                                         const char *format, ...);
