@@ -140,7 +140,7 @@ int fmb_robot_place(struct fmb_robot_scene *scene, const double *q);
 
 /* ---- Paths ----
  *
- * A path is proven edge by edge: from one row of joint values to the next, values run straight.
+ * A path is proven edge by edge: on an edge, joint values change linearly from one row to the next.
  *
  *     struct fmb_robot_path *path;
  *     struct fmb_robot_edge edge;
@@ -154,18 +154,18 @@ int fmb_robot_place(struct fmb_robot_scene *scene, const double *q);
  *         ... edge.verdict ...
  *     }
  *
- * The motion is that of the doubles given, over the real numbers: joints turn by their values, with
- * real sines and cosines. There is no touching here: pairs that come closer than the errors of
- * doubles, some 1e-12 of the lengths, without overlapping by more, are undecided. The README says
- * what is promised.
+ * The motion is defined over the real numbers, by the given doubles. There is no verdict for
+ * touching: pairs that come closer than the errors of doubles, some 1e-12 of the lengths, without
+ * overlapping by more, are undecided. clients/robot/PATHS.md says what is proven.
  *
  * These functions may change in any version. */
 
-/* Proves paths of a robot among the bodies of its scene, all pairs but the ignored ones. Bodies of
- * the world are at rest. Pairs that do not move relative to each other are no part of the path: two
- * bodies of the world are not looked at; others are decided here, once, at home.
- * In:  scene      must outlive the path; not changed, and not used by another thread meanwhile
- *      clearance  to be proven; 0: none, and the clearance of an edge is found to a tenth
+/* Begins to prove paths of a robot among the bodies of its scene. All pairs are tested that are not
+ * ignored. Bodies of the world are at rest. Pairs that do not move relative to each other are not
+ * tested on edges: pairs of bodies of the world are not tested at all, others once, here, in the
+ * home pose.
+ * In:  scene      must outlive the path; not to be changed, or used by another thread, meanwhile
+ *      clearance  to be proven; 0: none, and the clearance of an edge is found to within a tenth
  * Out: *out       set in any case, for fmb_robot_path_why(); to be freed
  * Returns 0; or -1 after an error.
  * Cost: O(pairs of frames). */
@@ -174,14 +174,14 @@ int fmb_robot_path_begin(struct fmb_robot_scene *scene, double clearance,
                          struct fmb_robot_path **out);
 void fmb_robot_path_free(struct fmb_robot_path *path); /* may be NULL, or within an edge */
 
-/* Returns what was wrong in the last call that failed, as lines separated by line feeds. */
+/* Returns the errors of the last call that failed, as lines separated by line feeds. */
 const char *fmb_robot_path_why(struct fmb_robot_path *path);
 
-/* Returns the number of pairs of placements that are looked at on every edge. */
+/* Returns the number of pairs of placements that are tested on every edge. */
 size_t fmb_robot_path_pairs(const struct fmb_robot_path *path);
 
-/* Returns the number of pairs of placements that meet and do not move relative to each other:
- * overlapping ones are in contact on the whole path. */
+/* Returns the number of pairs of placements that meet and do not move relative to each other. Those
+ * that overlap are in contact on the whole path. Out: *touches: [number]. */
 struct fmb_robot_touch {
     unsigned a, b;
     enum fmb_verdict verdict;
@@ -189,15 +189,15 @@ struct fmb_robot_touch {
 size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
                               const struct fmb_robot_touch **touches);
 
-/* Begins an edge; a former one is abandoned.
- * In:  from, to  [n], as of fmb_robot_place(); a continuous joint turns by at most pi
+/* Begins an edge; an earlier one that is not complete is abandoned.
+ * In:  from, to  [n], as for fmb_robot_place(); a continuous joint may turn by at most pi
  * Returns 0; or -1 after an error.
  * Cost: O(pairs of frames). */
 int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const double *to);
 
-/* Returns a bound of how far any two bodies move relative to each other if every joint is off by 1,
- * radian or length, on the edges so far: a clearance c covers errors of up to c divided by it in
- * all joints at once. */
+/* Returns an upper bound of how far two bodies move relative to each other if every joint is off by
+ * 1, radian or length, on the edges so far. A clearance c covers errors of up to c divided by this
+ * bound in all joints at once. */
 double fmb_robot_path_lever(const struct fmb_robot_path *path);
 
 enum fmb_robot_verdict {
@@ -212,17 +212,18 @@ struct fmb_robot_edge {
     /* Fractions of the edge. Free: all of it. Near: the time of `closest`. Undecided: at most 2^-30
      * long, unless the edge took half a million steps. */
     double at[2];
-    double
-        clearance;  /* a lower bound of the least gap; 0 unless free or near. Infinite: no pairs */
-    double closest; /* an upper bound of the gap at a time that was looked at; infinite: none was */
+    /* A lower bound of the least gap; 0 unless free or near; infinite if there are no pairs. */
+    double clearance;
+    /* An upper bound of the least gap, from the times examined; infinite if there was none. */
+    double closest;
     bool has_pair;
     size_t a, b; /* placements: of the contact, of the undecided interval, or else of `closest` */
 };
 
 /* Continues an edge.
  * Out: *out  the answer, if it returns 1
- * Returns 1 when the edge is complete; 0: to be called again. After that, and before
- * fmb_robot_path_edge(), it returns 0.
+ * Returns 1 once, when the edge is complete; else 0. After that, fmb_robot_path_edge() begins the
+ * next edge.
  * Cost: some 0.1 ms; O(pairs of frames) where the search for the first contact begins. */
 int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out);
 
