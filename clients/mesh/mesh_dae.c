@@ -1,9 +1,10 @@
 /* COLLADA parser. The nodes of the file's scene are visited, and the primitives of each instance of
- * a geometry become vertices, transformed, and faces. Text is read where it stands in the file, so
- * that errors name its line.
+ * a geometry become vertices, transformed, and faces. Numbers are read from the bytes of the file,
+ * so that errors name their line.
  *
- * Files are not trusted (xml.h). Nodes may contain instances of others, which multiply: what is
- * read is bounded with its repetitions, as is the depth, and a node within itself is an error. */
+ * Files are not trusted (xml.h). Nodes may contain instances of other nodes, so a small file may
+ * describe any number of faces. So the bytes that are read, repetitions included, and the depth are
+ * bounded, and a node that contains itself is an error. */
 #include "mesh_source.h"
 
 #include "turn.h"
@@ -76,7 +77,8 @@ static bool check(struct dae *dae, const struct xml_element *element)
                                         "lookat",  "skew"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (xml_is(element, names[i]))
-            return refuse(dae, element, "<%s> is not supported", element->name);
+            return refuse(dae, element, "<%s> is not supported: convert the mesh to STL or OBJ",
+                          element->name);
     return true;
 }
 

@@ -91,8 +91,8 @@ struct robot {
     size_t error_count;
     struct owned_scene memory; /* of texts and entries of tables */
     /* What is being read: its file, and the link or joint, as "link" and its name, or NULL. Only
-     * the first error of an element is reported: until failed is set to false, there is no other,
-     * and results are not used. bad: there was an error. */
+     * the first error of an element is reported: further errors are dropped until failed is set to
+     * false, and results are not used. bad: there was an error. */
     const char *file, *kind, *within;
     bool failed, bad;
 };
