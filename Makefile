@@ -268,7 +268,7 @@ $(B)/libfmb.a: $(engine_objects)
 $(B)/libfmb-client.a: $(client_objects) $(wire_objects)
 	$(call library,fmb_client_* fmb_flat_*)
 # From the other folders, the linker takes only what these objects need.
-$(B)/libfmb-robot.a: $(filter-out %/joints.o %/robot_run.o,$(call objects_in,clients/robot)) $(product)
+$(B)/libfmb-robot.a: $(filter-out %/joints.o %/robot_run.o %/path_proof.o,$(call objects_in,clients/robot)) $(product)
 	$(call library,fmb_robot_*)
 
 # The same as shared libraries, with the names of their headers alone.

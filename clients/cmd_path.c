@@ -6,10 +6,12 @@
 #include "escape.h"
 #include "json_write.h"
 #include "number.h"
-#include "path.h"
+#include "output.h"
+#include "path_proof.h"
 #include "progress.h"
 #include "robot_run.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -65,10 +67,16 @@ static const char usage[] =
     "\n"
     "Output:\n"
     "  --json               a line of JSON for each edge, and one for the path\n"
+    "  --proof FILE         writes what proves the edges that are free or near:\n"
+    "                       'fmb-check-path FILE' checks it\n"
+    "  --check FILE         in place of --joints-csv: compares the robot, the bodies\n"
+    "                       and the pairs that a proof is about with those given\n"
+    "  --force              overwrites a FILE that is no proof\n"
     "  --verbose            lists the links, bodies and pairs that messages count\n"
     "  -h, --help\n"
     "\n"
-    "Exit codes: 0 free; 3 contact or near; 1 undecided; 2 wrong usage, or a file\n"
+    "Exit codes: 0 free; 3 contact or near; 1 undecided, or --check differs; 2 wrong usage, or a "
+    "file\n"
     "that cannot be read or is not valid: no edge is printed.\n";
 
 enum { FOUND = 3 }; /* exit code: contact or near */
@@ -82,10 +90,14 @@ static const char *const verdicts[] = {
 
 struct path_run {
     struct robot_run run;
-    const char *file; /* the robot */
+    const char *robot_file;
     const struct robot_run_options *options;
     bool json;
-    double clearance; /* to be proven; 0: none */
+    const char *check; /* a proof to be compared; NULL: none */
+    struct output_options output;
+    struct output *file;     /* of the proof; NULL: none */
+    struct path_proof proof; /* if there is a file */
+    double clearance;        /* to be proven; 0: none */
     struct fmb_robot_path *path;
     double *from, *at; /* [joints of the tree]: values of the previous row, and at a place */
     size_t edges, count[FMB_ROBOT_UNDECIDED + 1];
@@ -139,7 +151,7 @@ static void write_command(const struct path_run *run, FILE *out)
     char number[NUMBER_TEXT_MAX], *values, word[2 * QUERY_NAME_MAX + 16];
     size_t size;
     fputs("fmb scene", out);
-    write_word(out, run->file);
+    write_word(out, run->robot_file);
     FILE *list = open_memstream(&values, &size);
     if (!list)
         allocate_failed();
@@ -269,6 +281,8 @@ static void write_edge(struct path_run *run, const struct edge *edge,
         write_json(run, edge, answer);
     else if (shown)
         write_row(run, edge, answer);
+    if (run->file)
+        path_proof_edge(&run->proof, run->path, edge->number, answer);
     progress_to((int64_t) edge->number, (int64_t) run->edges);
 }
 
@@ -359,6 +373,8 @@ static bool take_rows(struct path_run *run, struct joint_table *table, bool prov
         struct fmb_robot_edge answer;
         strcpy(label, table->label);
         memcpy(run->from, joints->value, size);
+        if (run->file && !prove)
+            path_proof_row(&run->proof, run->path, run->from);
         row = joint_table_next(table);
         if (row == JOINT_ROW_BAD || (row == JOINT_ROW_END && number > 1))
             break;
@@ -380,6 +396,24 @@ static bool take_rows(struct path_run *run, struct joint_table *table, bool prov
     return good && row != JOINT_ROW_BAD;
 }
 
+/* Compares the robot and the world of a proof. */
+static bool compare(struct path_run *run)
+{
+    size_t rows, line;
+    const char *why = path_proof_compare(run->check, run->path, &rows, &line);
+    if (why && line > 0)
+        complain("%s: line %zu: %s", run->check, line, why);
+    else if (why)
+        complain("%s: %s", run->check, why);
+    else
+        printf(
+            "%s is about this robot among these bodies, and a path of %zu rows; 'fmb-check-path "
+            "%s' checks what it proves\n",
+            run->check, rows, run->check);
+    run->count[FMB_ROBOT_UNDECIDED] = why && line > 0;
+    return !why || line > 0;
+}
+
 static bool prove_table(struct path_run *run)
 {
     struct joint_table table;
@@ -389,6 +423,17 @@ static bool prove_table(struct path_run *run)
         return false;
     }
     run->run.path = run->path;
+    if (run->check)
+        return compare(run);
+    if (!output_open(&run->output, &run->file))
+        return false;
+    run->path->recorded = run->file != NULL;
+    if (run->file && !path_proof_begin(run->file->file, &run->proof)) {
+        output_complain(run->output.path, ENOMEM);
+        return false;
+    }
+    if (run->file)
+        path_proof_bodies(&run->proof, run->path);
     bool good = joint_table_open(run->options->table, joints, &table) &&
                 take_rows(run, &table, false) && joints_check(joints);
     if (good) {
@@ -396,18 +441,25 @@ static bool prove_table(struct path_run *run)
         robot_run_report(&run->run, &table);
         progress_begin("edges");
         write_touches(run);
+        if (run->file)
+            path_proof_pairs(&run->proof, run->path);
         good = joint_table_rewind(&table) && take_rows(run, &table, true);
         progress_end();
     }
+    joint_table_close(&table);
+    if (run->file && !path_proof_end(&run->proof)) {
+        complain("%s: the proof could not be written", run->output.path);
+        good = false;
+    }
+    good = output_close(run->file, good) && good;
     if (good)
         write_end(run);
-    joint_table_close(&table);
     return good;
 }
 
 static int prove_file(struct path_run *run)
 {
-    bool good = robot_run_begin(run->options, run->file, &run->run);
+    bool good = robot_run_begin(run->options, run->robot_file, &run->run);
     if (good) {
         const size_t joints = run->run.robot->tree.joint_count;
         run->from = allocate(joints, sizeof *run->from);
@@ -431,22 +483,35 @@ static int prove_file(struct path_run *run)
 int cmd_path(int argc, char **argv)
 {
     struct robot_run_options options = ROBOT_RUN_DEFAULTS;
-    struct path_run run = {.options = &options, .clearance = -1, .least = INFINITY};
+    struct output_rules rules = {.input_count = 1};
+    struct path_run run = {.options = &options,
+                           .clearance = -1,
+                           .least = INFINITY,
+                           .output = {.kind = OUTPUT_PROOF, .rules = &rules}};
     const struct args_option own[] = {
         ROBOT_RUN_OPTIONS(options),
         {"clearance", ARGS_NUMBER, &run.clearance, .high = DBL_MAX},
         {"json", ARGS_FLAG, .out = &run.json},
+        {"proof", ARGS_OTHER, &run.output.path, .take = robot_run_take_once},
+        {"check", ARGS_OTHER, &run.check, .take = robot_run_take_once},
+        {"force", ARGS_FLAG, .out = &rules.force},
         {.name = NULL},
     };
     struct args args = {"path",           usage, own, .operand = "ROBOT.urdf", .operands_min = 1,
                         .operands_max = 1};
     int code = robot_run_parse(&args, argc, argv, &options);
-    if (code == ARGS_RUN && !options.table) {
-        args_error(&args, "expected --joints-csv FILE");
+    if (code == ARGS_RUN && !options.table == !run.check) {
+        args_error(&args, "expected one of --joints-csv FILE and --check FILE");
         code = ARGS_USAGE;
     }
+    if (code == ARGS_RUN && !args_exclude(&args, run.check, run.output.path, "--check and --proof"))
+        code = ARGS_USAGE;
+    rules.input = args.operands;
+    rules.other_input = options.table;
+    if (code == ARGS_RUN && !output_check(&run.output))
+        code = ARGS_USAGE;
     if (code == ARGS_RUN) {
-        run.file = args.operands[0];
+        run.robot_file = args.operands[0];
         code = prove_file(&run);
     }
     free(options.world);

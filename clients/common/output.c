@@ -73,6 +73,7 @@ static const struct {
     [OUTPUT_PAGE] = {"a page (HTML)", "<!DOCTYPE html>"},
     [OUTPUT_REPORT] = {"a JUnit report",
                        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites "},
+    [OUTPUT_PROOF] = {"a proof (gzip)", "\x1f\x8b\x08"},
 };
 
 static bool is_same(const struct stat *a, const struct stat *b)

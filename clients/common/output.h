@@ -9,7 +9,7 @@
 
 /* The first bytes of an existing file determine its kind. Without --force, not even a log replaces
  * a log, since that is a recording. */
-enum output_kind { OUTPUT_PAGE, OUTPUT_REPORT, OUTPUT_LOG };
+enum output_kind { OUTPUT_PAGE, OUTPUT_REPORT, OUTPUT_PROOF, OUTPUT_LOG };
 
 /* What applies to all files that a command writes. */
 struct output_rules {

@@ -112,6 +112,7 @@ static bool take_options(struct fmb_robot *robot, const struct fmb_robot_options
                (i < 3 || fabs(options->base[i]) <= TURN_RADIANS_MAX);
     if (good) {
         memcpy(robot->base.p, options->base, sizeof robot->base.p);
+        memcpy(robot->base_rpy, options->base + 3, sizeof robot->base_rpy);
         pose_turn_rpy(options->base + 3, robot->base.q);
     } else {
         robot_say(errors, "base: expected finite numbers, angles up to %.0f radians",

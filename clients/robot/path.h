@@ -137,6 +137,9 @@ struct fmb_robot_path {
 /* Makes the parts, pairs and chains. Returns false after an error. */
 bool path_model_make(struct fmb_robot_path *path);
 
+/* Whether a joint that can move is between two nodes. */
+bool path_moves(const struct fmb_robot_path *path, unsigned a, unsigned b);
+
 /* Begins an edge: value is set. Returns false if numbers are too large. */
 bool path_edge_begin(struct fmb_robot_path *path);
 

@@ -174,6 +174,22 @@ static void find_chain(struct fmb_robot_path *path, unsigned a, unsigned b, stru
     free(side[1]);
 }
 
+bool path_moves(const struct fmb_robot_path *path, unsigned a, unsigned b)
+{
+    const struct robot *tree = &path->scene->robot->tree;
+    unsigned node[2] = {a, b}, depth[2] = {depth_of(tree, a), depth_of(tree, b)};
+    while (node[0] != node[1]) {
+        const int end = depth[0]-- < depth[1] ? 1 : 0;
+        depth[0] += (unsigned) end;
+        depth[1] -= (unsigned) end;
+        const unsigned j = joint_above(tree, node[end]);
+        if (j != ROBOT_ROOT && tree->joints[j].type != ROBOT_FIXED)
+            return true;
+        node[end] = j == ROBOT_ROOT ? (unsigned) tree->link_count : tree->joints[j].link[0];
+    }
+    return false;
+}
+
 /* Decides a pair that does not move relative to each other, exactly, where it is at home. */
 static bool decide_rigid(struct fmb_robot_path *path, unsigned a, unsigned b)
 {

@@ -57,7 +57,9 @@ struct robot_joint {
     const struct robot_name *name;
     enum robot_joint_type type;
     struct pose origin;        /* in the parent; its q has any length */
+    double rpy[3];             /* of the origin; rpy[0] is NAN: given as a quaternion */
     double axis[3];            /* unit length */
+    double given_axis[3];      /* as the file has it, of any length */
     double limit[2];           /* lower, upper; radians, or lengths; infinite: none */
     const char *mimic_name;    /* of the joint that it follows, or NULL */
     unsigned mimic;            /* the same as an index */
@@ -78,7 +80,8 @@ struct robot_link {
 enum { ROBOT_COUNT_MAX = 8192, ROBOT_BYTES_MAX = 1 << 23 };
 
 struct robot {
-    const char *path; /* of the file */
+    const char *title; /* its name; "": none */
+    const char *path;  /* of the file */
     struct robot_link *links;
     struct robot_joint *joints;
     struct robot_element *elements;

@@ -39,7 +39,8 @@ struct fmb_robot {
     struct robot_body_options options;
     struct robot_meshes meshes;
     struct pose base; /* of the root */
-    bool bad;         /* there were errors */
+    double base_rpy[3];
+    bool bad; /* there were errors */
     /* Bodies of links. */
     size_t body_count;
     struct fmb_placement *bodies; /* [body_count]: body, id, name and group */

@@ -31,13 +31,16 @@ static void read_sizes(struct robot *robot, const struct xml_element *node, cons
             robot_refuse(robot, node->line, "<%s>: %s is negative", node->name, name);
 }
 
-/* Reads a pose: xyz, and rpy or, in URDF 1.1, quat_xyzw, which may have any length. */
-static void read_origin(struct robot *robot, const struct xml_element *parent, struct pose *out)
+/* Reads a pose: xyz, and rpy or, in URDF 1.1, quat_xyzw, which may have any length. rpy: receives
+ * the angles, or NAN if there is a quaternion. */
+static void read_origin(struct robot *robot, const struct xml_element *parent, struct pose *out,
+                        double rpy[3])
 {
     const struct xml_element *node = urdf_child(robot, parent, "origin");
-    double rpy[3] = {0}, q[4] = {0};
+    double q[4] = {0};
     bool has_rpy = false, has_q = false;
     *out = POSE_IDENTITY;
+    memset(rpy, 0, 3 * sizeof *rpy);
     if (!node)
         return;
     for (const char **at = node->attributes; *at; at += 2) {
@@ -66,6 +69,7 @@ static void read_origin(struct robot *robot, const struct xml_element *parent, s
     if (has_q) {
         memcpy(out->q, (const double[]){q[3], q[0], q[1], q[2]}, sizeof out->q);
         robot_limit_length(out->q);
+        rpy[0] = NAN;
     } else {
         pose_turn_rpy(rpy, out->q);
     }
@@ -151,7 +155,8 @@ static void read_collision(struct robot *robot, const struct xml_element *node)
                                     robot->element_count + 1, sizeof *robot->elements);
     struct robot_element *element = &robot->elements[robot->element_count];
     *element = (struct robot_element){.line = node->line};
-    read_origin(robot, node, &element->origin);
+    double rpy[3];
+    read_origin(robot, node, &element->origin, rpy);
     read_shape(robot, shape, element);
     robot->element_count += !robot->failed;
 }
@@ -199,6 +204,7 @@ static void read_axis(struct robot *robot, const struct xml_element *node, struc
 {
     double most = 0, square = 0;
     read_numbers(robot, node, "xyz", true, 3, out->axis);
+    memcpy(out->given_axis, out->axis, sizeof out->axis);
     for (int i = 0; i < 3; i++)
         most = fmax(most, fabs(out->axis[i]));
     for (int i = 0; i < 3; i++)
@@ -214,12 +220,13 @@ static void read_joint(struct robot *robot, const struct xml_element *node)
     static const char *const ends[2] = {"parent", "child"};
     struct robot_joint joint = {.name = begin(robot, node, &robot->joint_names),
                                 .axis = {1, 0, 0},
+                                .given_axis = {1, 0, 0},
                                 .limit = {-INFINITY, INFINITY},
                                 .multiplier = 1};
     if (!joint.name)
         return;
     read_type(robot, node, &joint);
-    read_origin(robot, node, &joint.origin);
+    read_origin(robot, node, &joint.origin, joint.rpy);
     const struct xml_element *axis = urdf_child(robot, node, "axis"),
                              *limit = urdf_child(robot, node, "limit"),
                              *mimic = urdf_child(robot, node, "mimic");
@@ -270,6 +277,9 @@ static void read_robot(struct robot *robot, const struct xml_element *root)
                      "expected <robot>, found <%.64s>: SDF and others are not supported: give the "
                      "robot as URDF",
                      root->name);
+    const char *title = urdf_attribute(robot, root, "name", false);
+    if (title && *title)
+        robot->title = scene_text(&robot->memory, title);
     for (const struct xml_element *node = root->child; node && !robot->failed; node = node->next) {
         for (size_t i = 0; i < sizeof srdf / sizeof *srdf; i++)
             if (xml_is(node, srdf[i]))
@@ -292,7 +302,7 @@ static void read_robot(struct robot *robot, const struct xml_element *root)
 
 bool robot_read(const char *path, struct robot *out)
 {
-    *out = (struct robot){.path = strcmp(path, "-") == 0 ? "standard input" : path};
+    *out = (struct robot){.title = "", .path = strcmp(path, "-") == 0 ? "standard input" : path};
     const struct xml_element *root = urdf_open(out, path);
     if (root)
         read_robot(out, root);

@@ -204,6 +204,65 @@ refused() {
     ended 2
 }
 
+@test "a proof holds every pair of every free edge, and what it is about" {
+    rows 0,0 1,1 3,1 4,1
+    path --proof proof
+    ended 3
+    [ "$(head -c 2 proof | xxd -p)" = 1f8b ]
+    gunzip < proof > lines
+    jq -e -s '.[0] == {"fmb-path": 1} and .[-1] == {"end": (length - 1)}' lines
+    run jq -c 'select(.row or .edge or .pair or .ignored) | [.row, .edge, .to, .pair, .pairs]' lines
+    is '["0x0p+0 0x0p+0",null,null,null,null]
+["0x1p+0 0x1p+0",null,null,null,null]
+["0x1.8p+1 0x1p+0",null,null,null,null]
+["0x1p+2 0x1p+0",null,null,null,null]
+[null,null,null,null,1]
+[null,1,"0x1p+0",null,null]
+[null,null,null,[0,1],null]
+[null,2,"0x1p+0",null,null]
+[null,null,null,[0,1],null]
+[null,3,"0x0p+0",null,null]'
+    # The intervals of each pair follow each other from 0 to 1.
+    jq -e -s '[.[].proof // empty | map(.[1] | -. | exp2) | add == 1] == [true, true]' lines
+    cp proof first
+    path --proof proof
+    cmp first proof
+    echo mine > other
+    run "$FMB" path robot.urdf --joints-csv path.csv --proof other
+    ended 2
+    [ "$(cat other)" = mine ]
+}
+
+@test "--check compares the robot, the bodies and the pairs of a proof" {
+    check() {
+        run --separate-stderr "$FMB" path --check "${1:-proof}" robot.urdf --with world.json "${@:2}"
+    }
+    rows 0,0 1,1
+    path --proof proof
+    ended 0
+    check
+    ended 0
+    [[ $output == "proof is about this robot among these bodies, and a path of 2 rows"* ]]
+    head -c 300 proof > cut
+    head -c -30 proof > end
+    for file in cut end world.json missing; do
+        check "$file"
+        ended 2
+        [[ $stderr == "fmb: $file: "* ]]
+    done
+    check proof --ignore cube,wall
+    ended 1
+    [[ $stderr == *"other pairs are tested"* ]]
+    sed -i 's/"size": \[2/"size": [2.5/' world.json
+    check
+    ended 1
+    [[ $stderr == *"a body differs"* ]]
+    sed -i 's/xyz="0 0 1"/xyz="0 1 1"/' robot.urdf
+    check
+    ended 1
+    [[ $stderr == *"the robot differs"* ]]
+}
+
 @test "the demo's path meets where its poses do" {
     cd "$DEMO" || return
     run --separate-stderr "$FMB" path robot.urdf --joints-csv path.csv --with world.json --json
