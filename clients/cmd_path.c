@@ -75,9 +75,9 @@ static const char usage[] =
     "  --verbose            lists the links, bodies and pairs that messages count\n"
     "  -h, --help\n"
     "\n"
-    "Exit codes: 0 free; 3 contact or near; 1 undecided, or --check differs; 2 wrong usage, or a "
-    "file\n"
-    "that cannot be read or is not valid: no edge is printed.\n";
+    "Exit codes: 0 free; 3 contact or near; 1 undecided, or --check differs;\n"
+    "2 wrong usage, or a file that cannot be read or is not valid: no edge is\n"
+    "printed.\n";
 
 enum { FOUND = 3 }; /* exit code: contact or near */
 
