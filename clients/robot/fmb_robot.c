@@ -157,7 +157,6 @@ int fmb_robot_read(const char *path, const struct fmb_robot_options *options,
         robot_say(&tree->errors, "%s: and %zu more errors", tree->path,
                   tree->error_count - ROBOT_ERRORS_MAX);
     robot_lines_text(&tree->errors);
-    robot_lines_text(&robot->unknown);
     robot->bad = !good;
     number_end(locale);
     return good ? 0 : -1;
@@ -167,9 +166,9 @@ void fmb_robot_free(struct fmb_robot *robot)
 {
     if (!robot)
         return;
+    HASH_CLEAR(hh, robot->unknown);
     robot_clear(&robot->tree);
     scene_clear(&robot->owner);
-    robot_lines_clear(&robot->unknown);
     free(robot->ignored.pair);
     free(robot->enabled.pair);
     free(robot);

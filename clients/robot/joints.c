@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 #include "complain.h"
+#include "escape.h"
 #include "number.h"
 #include "turn.h"
 #include "utf8.h"
@@ -34,15 +35,13 @@ static void check_value(struct joints *joints, size_t j, const char *path, unsig
     static const double full_turn = 6.2831853071795862;
     const struct robot_joint *joint = &joints->robot->joints[j];
     const bool turns = joint->type != ROBOT_PRISMATIC;
-    struct joint_report found = {.value = joints->value[j], .path = path, .line = line};
+    struct joint_report found = {joints->value[j], 0, j, path, line};
     found.by = fmax(joint->limit[0] - found.value, found.value - joint->limit[1]);
     if (robot_refuse_value(joint, found.value))
         found.by = INFINITY;
     else if (turns && fabs(found.value) > fmax(full_turn, fabs(joints->full.value)) &&
-             (found.by > joints->slack || joint->type == ROBOT_CONTINUOUS)) {
+             (found.by > joints->slack || joint->type == ROBOT_CONTINUOUS))
         joints->full = found;
-        joints->full_joint = j;
-    }
     if (!(found.by > 0) || (!isinf(found.by) && !is_chosen(joints, j)))
         return;
     joints->outside_count++;
@@ -51,83 +50,88 @@ static void check_value(struct joints *joints, size_t j, const char *path, unsig
         joints->outside[j] = found;
 }
 
-/* Reports a value of joint j. limited: whether to name its limits; what: the end of the line. */
-static void report_value(const struct joints *joints, size_t j, const struct joint_report *at,
-                         bool limited, const char *what)
+static const char degrees[] = "is more than a full turn: is it in degrees? Values are in radians";
+
+/* Prints a value. what: why it is reported. */
+static void report_value(const struct joints *joints, const struct joint_report *at,
+                         const char *what)
 {
-    const struct robot_joint *joint = &joints->robot->joints[j];
-    const bool given = joints->given[j], follows = !given && joint->mimic_name;
-    char line[32] = "", value[NUMBER_TEXT_MAX], limits[2 * NUMBER_TEXT_MAX + 64] = "";
-    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    const struct robot_joint *joint = &joints->robot->joints[at->joint];
+    const bool follows = !joints->given[at->joint] && joint->mimic_name;
+    char line[32] = "", value[NUMBER_TEXT_MAX];
     if (at->line > 0)
         snprintf(line, sizeof line, ": line %lu", at->line);
-    if (limited)
-        snprintf(limits, sizeof limits, "is outside its limits, %s to %s%s",
-                 number_or_inf(joint->limit[0], low), number_or_inf(joint->limit[1], high),
-                 joint->type != ROBOT_PRISMATIC ? " radians" : "");
-    complain("%s%s: joint '%s'%s%s%s: %s %s%s", at->path, line, joint->name->name,
+    complain("%s%s: joint '%s'%s%s%s: %s %s", at->path, line, joint->name->name,
              follows ? " (a mimic of '" : "", follows ? joint->mimic_name : "", follows ? "')" : "",
-             number_or_inf(at->value, value), limits, what);
-}
-
-static void report_full(const struct joints *joints, FILE *out)
-{
-    char value[NUMBER_TEXT_MAX];
-    if (joints->full.value != 0)
-        fprintf(out,
-                "; joint '%s': %s is more than a full turn: is it in degrees? Values are in "
-                "radians",
-                joints->robot->joints[joints->full_joint].name->name,
-                number_or_inf(joints->full.value, value));
+             number_or_inf(at->value, value), what);
 }
 
 bool joints_check(const struct joints *joints)
 {
-    const struct joint_report *outside = joints->outside;
-    char what[128];
-    if (!joints->refused)
-        return true;
-    for (size_t j = 0; j < joints->robot->joint_count; j++) {
-        const bool beyond = joints->robot->joints[j].type != ROBOT_PRISMATIC &&
-                            fabs(outside[j].value) > TURN_RADIANS_MAX;
-        snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
-        if (outside[j].by > joints->slack || isinf(outside[j].by))
-            report_value(joints, j, &outside[j], !beyond, beyond ? what : "");
+    char what[2 * NUMBER_TEXT_MAX + 64], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    for (size_t j = 0; joints->refused && j < joints->robot->joint_count; j++) {
+        const struct robot_joint *joint = &joints->robot->joints[j];
+        const struct joint_report *at = &joints->outside[j];
+        const bool turns = joint->type != ROBOT_PRISMATIC;
+        if (!(at->by > joints->slack) && !isinf(at->by))
+            continue;
+        if (turns && fabs(at->value) > TURN_RADIANS_MAX)
+            snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
+        else
+            snprintf(what, sizeof what, "is outside its limits, %s to %s%s",
+                     number_or_inf(joint->limit[0], low), number_or_inf(joint->limit[1], high),
+                     turns ? " radians" : "");
+        report_value(joints, at, what);
     }
-    if (joints->full.value != 0)
-        report_value(joints, joints->full_joint, &joints->full, false,
-                     "is more than a full turn: is it in degrees? Values are in radians");
-    return false;
+    if (joints->refused && joints->full.value != 0)
+        report_value(joints, &joints->full, degrees);
+    return !joints->refused;
 }
 
-void joints_describe(const struct joints *joints, FILE *out)
+/* Writes what separates a part from the one before it. */
+static void separate(const char **before, FILE *out)
+{
+    fputs(*before, out);
+    *before = "; ";
+}
+
+void joints_describe(const struct joints *joints, const char *before, FILE *out)
 {
     const struct robot *robot = joints->robot;
+    const struct joint_report *farthest = joints->outside, *mimic = &joints->mimic;
     char value[NUMBER_TEXT_MAX], slack[NUMBER_TEXT_MAX];
-    size_t farthest = 0, middle = 0;
+    const char *comma = NULL;
     for (size_t j = 0; j < robot->joint_count; j++) {
-        const struct robot_joint *joint = &robot->joints[j];
-        farthest = joints->outside[j].by > joints->outside[farthest].by ? j : farthest;
-        if (needs_value(joints, j) && robot_home(joint) != 0)
-            fprintf(out, "%s%s",
-                    middle++ == 0 ? "; in the middle of their limits, as 0 is outside: " : ", ",
-                    joint->name->name);
+        const struct joint_report *at = &joints->outside[j];
+        farthest = at->by > farthest->by ? at : farthest;
+        if (!needs_value(joints, j) || robot_home(&robot->joints[j]) == 0)
+            continue;
+        if (!comma)
+            separate(&before, out);
+        fprintf(out, "%s%s", comma ? comma : "in the middle of their limits, as 0 is outside: ",
+                robot->joints[j].name->name);
+        comma = ", ";
     }
-    if (joints->outside_count > 0)
-        fprintf(out,
-                "; values outside limits, within --limit-slack %s: %zu, the farthest %s of '%s'",
+    if (joints->outside_count > 0) {
+        separate(&before, out);
+        fprintf(out, "values outside limits, within --limit-slack %s: %zu, the farthest %s of '%s'",
                 number_or_inf(joints->slack, slack), joints->outside_count,
-                number_or_inf(joints->outside[farthest].value, value),
-                robot->joints[farthest].name->name);
-    if (joints->outside_count > 0 && joints->outside[farthest].line > 0)
-        fprintf(out, " in line %lu", joints->outside[farthest].line);
-    if (joints->mimic.by > 0)
-        fprintf(out, "; mimic '%s' differs from what it follows by up to %s",
-                robot->joints[joints->mimic.joint].name->name,
-                number_short(joints->mimic.by, value));
-    if (joints->mimic.by > 0 && joints->mimic.line > 0)
-        fprintf(out, " (line %lu)", joints->mimic.line);
-    report_full(joints, out);
+                number_or_inf(farthest->value, value), robot->joints[farthest->joint].name->name);
+        if (farthest->line > 0)
+            fprintf(out, " in line %lu", farthest->line);
+    }
+    if (mimic->by > 0) {
+        separate(&before, out);
+        fprintf(out, "mimic '%s' differs from what it follows by up to %s",
+                robot->joints[mimic->joint].name->name, number_short(mimic->by, value));
+        if (mimic->line > 0)
+            fprintf(out, " (line %lu)", mimic->line);
+    }
+    if (joints->full.value != 0) {
+        separate(&before, out);
+        fprintf(out, "joint '%s': %s %s", robot->joints[joints->full.joint].name->name,
+                number_or_inf(joints->full.value, value), degrees);
+    }
 }
 
 static bool set_value(struct joints *joints, unsigned j, const char *text, const char *path,
@@ -210,7 +214,7 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line)
             joints->value[j] = follows;
             check_value(joints, j, path, line);
         } else if (by > joints->mimic.by) {
-            joints->mimic = (struct joint_most){by, j, line};
+            joints->mimic = (struct joint_report){joints->value[j], by, j, path, line};
         }
     }
 }
@@ -429,7 +433,7 @@ static void measure_step(struct joint_table *table)
     for (size_t j = 0; j < count && table->rows > 0; j++) {
         const double by = fabs(value[j] - table->before[j]);
         if (by > table->step.by)
-            table->step = (struct joint_most){by, j, table->line};
+            table->step = (struct joint_report){value[j], by, j, table->path, table->line};
     }
     if (count > 0)
         memcpy(table->before, value, count * sizeof *value);
@@ -441,7 +445,8 @@ void joint_table_describe(const struct joint_table *table, FILE *out)
     enum { NAMED = 8 };
     const struct robot *robot = table->joints->robot;
     char by[NUMBER_TEXT_MAX];
-    fprintf(out, "rows: %zu", table->rows);
+    escape_text(out, table->path);
+    fprintf(out, ": rows: %zu", table->rows);
     if (table->step.by > 0)
         fprintf(out, ", largest step %s of '%s' to line %lu", number_short(table->step.by, by),
                 robot->joints[table->step.joint].name->name, table->step.line);

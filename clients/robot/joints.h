@@ -9,18 +9,12 @@
 
 #include <stdio.h>
 
-/* A value to be reported, and its place. */
+/* A value to be reported: of which joint, and where it is given. */
 struct joint_report {
-    double value, by; /* by: how far it is outside the limits of its joint */
+    double value, by; /* by: a length or angle, such as that by which it is outside its limits */
+    size_t joint;
     const char *path;
     unsigned long line; /* 0: none */
-};
-
-/* The largest of several differences, with its joint and its line. */
-struct joint_most {
-    double by;
-    size_t joint;
-    unsigned long line;
 };
 
 struct joints {
@@ -34,9 +28,8 @@ struct joints {
     double slack;                 /* by which values may exceed limits */
     struct joint_report *outside; /* [joint_count]: farthest value of each joint; by is 0: none */
     size_t outside_count;         /* number of values */
-    struct joint_report full;     /* largest value that may be in degrees, of full_joint */
-    size_t full_joint;
-    struct joint_most mimic; /* difference between a given mimic joint and what it would follow */
+    struct joint_report full;     /* largest value that may be in degrees */
+    struct joint_report mimic; /* difference between a given mimic joint and what it would follow */
 };
 
 /* In: text: "name=value,name=value"; NULL: none. slack: at least 0. Returns false after an error.
@@ -53,10 +46,11 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line);
  * without limits, or outside the limits. */
 bool joints_check(const struct joints *joints);
 
-/* Describes values that joints_check() accepts, in parts that begin with a semicolon and a space:
- * joints that are not at 0 although no value is given, values outside the limits, values that seem
- * to be in degrees, and mimic joints that do not follow. */
-void joints_describe(const struct joints *joints, FILE *out);
+/* Describes values that joints_check() accepts, in parts that a semicolon separates; before: what
+ * stands before the first one, if there is any: joints that are not at 0 although no value is
+ * given, values outside the limits, values that seem to be in degrees, and mimic joints that do not
+ * follow. */
+void joints_describe(const struct joints *joints, const char *before, FILE *out);
 
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
  * any order: one for each joint that moves and has no value in joints; optional are those of mimic
@@ -79,7 +73,7 @@ struct joint_table {
     char unknown_name[QUERY_NAME_MAX + 1]; /* of the first one */
     double *before;                        /* owned: [joint_count], values of the previous row */
     size_t rows;                           /* since the beginning */
-    struct joint_most step;                /* of a joint from row to row */
+    struct joint_report step;              /* of a joint from row to row */
 };
 
 /* Opens a regular file, and reads its first line. joints: receives the values of rows. Returns
@@ -91,7 +85,7 @@ void joint_table_close(struct joint_table *table);
 enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
 enum joint_row joint_table_next(struct joint_table *table);
 
-/* Writes "rows: N, largest step ...", the joints without a column, and how many columns were
+/* Writes "PATH: rows: N, largest step ...", the joints without a column, and how many columns were
  * ignored. */
 void joint_table_describe(const struct joint_table *table, FILE *out);
 

@@ -2,6 +2,7 @@
 
 #include "allocate.h"
 #include "complain.h"
+#include "escape.h"
 #include "fmb_batch.h"
 #include "number.h"
 #include "path.h"
@@ -73,21 +74,6 @@ bool robot_run_place(struct robot_run *run, double time, const char *where)
 
 /* ---- Messages on stderr: at most three lines, without --verbose ---- */
 
-static FILE *begin_text(char **text, size_t *size)
-{
-    FILE *out = open_memstream(text, size);
-    if (!out)
-        allocate_failed();
-    return out;
-}
-
-static void end_text(FILE *out, const char *place, char **text)
-{
-    fclose(out);
-    complain("%s%s", place, *text);
-    free(*text);
-}
-
 void robot_run_measure(struct robot_run *run)
 {
     double most[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -108,35 +94,37 @@ void robot_run_measure(struct robot_run *run)
         run->size[axis] = most[1][axis] - most[0][axis];
 }
 
-static double excess_of(const struct robot_world *world)
+static void report_robot(const struct robot_run *run, FILE *out)
 {
-    return world->robot ? fmb_robot_excess(world->robot) : world->json.outside;
-}
-
-static void report_robot(const struct robot_run *run)
-{
-    double excess = fmb_robot_excess(run->robot);
-    char text[5][NUMBER_TEXT_MAX], more[128] = "", unit[4600] = "";
-    for (int axis = 0; axis < 3; axis++)
-        number_short(run->size[axis], text[axis]);
-    const struct robot_meshes *meshes = &run->robot->meshes;
+    const struct fmb_robot *robot = run->robot;
+    const struct robot_meshes *meshes = &robot->meshes;
+    double excess = fmb_robot_excess(robot);
+    char text[3][NUMBER_TEXT_MAX];
     for (size_t w = 0; w < run->options->world_count; w++) {
-        excess = fmax(excess, excess_of(&run->worlds[w]));
-        if (meshes->scaled == 0 && run->worlds[w].robot)
-            meshes = &run->worlds[w].robot->meshes;
+        const struct robot_world *world = &run->worlds[w];
+        excess = fmax(excess,
+                      world->robot ? fmb_robot_excess(world->robot) : world->json->owner.outside);
+        if (meshes->scaled == 0 && world->robot)
+            meshes = &world->robot->meshes;
     }
+    escape_text(out, robot->tree.path);
+    fprintf(out, ": links: %zu, with a body: %zu; size: %s x %s x %s%s", robot->tree.link_count,
+            robot->body_count, number_short(run->size[0], text[0]),
+            number_short(run->size[1], text[1]), number_short(run->size[2], text[2]),
+            run->options->table ? " in the first pose" : "");
     if (excess > 0) /* rounded up */
-        snprintf(more, sizeof more, "; hulls extend beyond what they enclose by at most %s",
-                 number_short(excess * (1 + 1e-5), text[3]));
-    if (meshes->scaled > 0)
-        snprintf(
-            unit, sizeof unit,
+        fprintf(out, "; hulls extend beyond what they enclose by at most %s",
+                number_short(excess * (1 + 1e-5), text[0]));
+    if (meshes->scaled > 0) {
+        fprintf(
+            out,
             "; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: %s m "
-            "in %s, files: %zu",
-            number_short(meshes->first_unit, text[4]), meshes->first_file, meshes->scaled);
-    complain("%s: links: %zu, with a body: %zu; size: %s x %s x %s%s%s%s", run->robot->tree.path,
-             run->robot->tree.link_count, run->robot->body_count, text[0], text[1], text[2],
-             run->options->table ? " in the first pose" : "", more, unit);
+            "in ",
+            number_short(meshes->first_unit, text[0]));
+        escape_text(out, meshes->first_file);
+        fprintf(out, ", files: %zu", meshes->scaled);
+    }
+    putc('\n', out);
 }
 
 static const char *const origin_names[ROBOT_ORIGINS + 2] = {
@@ -154,19 +142,18 @@ static void report_srdf(const struct fmb_robot *robot, FILE *out)
     enum { NAMED = 8 };
     if (robot->unlisted > 0)
         fprintf(out, "; tested neighbours that the SRDF does not list: %zu", robot->unlisted);
-    if (robot->unknown_count == 0)
-        return;
-    fprintf(out, "; links of the SRDF that the robot does not have: %zu (", robot->unknown_count);
-    const char *at = robot->unknown.text;
-    for (int i = 0; i < NAMED && *at; i++) {
-        const int length = (int) strcspn(at, "\n");
-        fprintf(out, "%s%.*s", i > 0 ? ", " : "", length, at);
-        at += length + (at[length] == '\n');
+    size_t i = 0;
+    for (const struct robot_name *name = robot->unknown; name && i <= NAMED; name = name->hh.next) {
+        if (i == 0)
+            fprintf(out, "; links of the SRDF that the robot does not have: %u (",
+                    HASH_COUNT(robot->unknown));
+        fputs(i > 0 ? ", " : "", out);
+        escape_text(out, i++ < NAMED ? name->name : "...");
     }
-    fprintf(out, "%s)", *at ? ", ..." : "");
+    fputs(i > 0 ? ")\n" : "\n", out);
 }
 
-static void report_pairs(const struct robot_run *run)
+static void report_pairs(const struct robot_run *run, FILE *out)
 {
     struct fmb_robot_scene *scene = run->scene;
     const uint64_t n = scene->owner.scene.placement_count;
@@ -177,9 +164,6 @@ static void report_pairs(const struct robot_run *run)
     const uint64_t ignored = pairs - tested;
     uint64_t count[ROBOT_ORIGINS + 2] = {0};
     const char *before = ": ";
-    char *text;
-    size_t size;
-    FILE *out = begin_text(&text, &size);
     for (size_t i = 0; i < scene->ignored.count; i++)
         count[scene->ignored.pair[i].origin] += scene->ignored.pair[i].a < n - still;
     for (unsigned i = 1; i < run->robot->body_count; i++)
@@ -200,22 +184,6 @@ static void report_pairs(const struct robot_run *run)
     if (still > 1)
         fprintf(out, "; bodies of the world are not tested against each other");
     report_srdf(run->robot, out);
-    end_text(out, "", &text);
-}
-
-/* table: NULL if there is none. */
-static void report_joints(const struct robot_run *run, const struct joint_table *table)
-{
-    char *text;
-    size_t size;
-    FILE *out = begin_text(&text, &size);
-    if (table)
-        joint_table_describe(table, out);
-    joints_describe(&run->joints, out);
-    fclose(out);
-    if (size > 0)
-        complain("%s: %s", table ? run->options->table : "joints", text + (table ? 0 : 2));
-    free(text);
 }
 
 /* Lists what the other lines count. */
@@ -239,15 +207,25 @@ static void report_more(const struct robot_run *run)
         if (robot->rigid[i] != i)
             complain("joined rigidly: %s and %s", robot->link_names[robot->rigid[i]],
                      robot->link_names[i]);
-    if (robot->unknown_count > 0)
-        robot_world_print("the robot has no link", robot->unknown.text);
+    for (const struct robot_name *name = robot->unknown; name; name = name->hh.next)
+        complain("the robot has no link: %s", name->name);
 }
 
 void robot_run_report(const struct robot_run *run, const struct joint_table *table)
 {
-    report_robot(run);
-    report_pairs(run);
-    report_joints(run, table);
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        allocate_failed();
+    report_robot(run, out);
+    report_pairs(run, out);
+    if (table)
+        joint_table_describe(table, out);
+    joints_describe(&run->joints, table ? "; " : "joints: ", out);
+    fclose(out);
+    robot_world_print("", text);
+    free(text);
     if (run->options->verbose)
         report_more(run);
 }

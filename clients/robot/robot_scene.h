@@ -55,8 +55,7 @@ struct fmb_robot {
     size_t unlisted;            /* pairs of neighbours that the SRDF does not list */
     bool *untested;             /* [body_count]: collisions are disabled by default; NULL: none */
     struct robot_pairs enabled; /* pairs that are tested in spite of that */
-    struct robot_lines unknown; /* links of the SRDF that the robot does not have, a line each */
-    size_t unknown_count;
+    struct robot_name *unknown; /* a table: links of the SRDF that the robot does not have */
     /* q. */
     size_t joint_count;
     unsigned *moving;         /* [joint_count], joints that move and follow no other */

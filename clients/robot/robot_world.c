@@ -12,49 +12,30 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ERROR_MAX = 4800 };
-
-/* Reads the only scene of a JSON file. Returns false after an error: one line of text. */
-static bool read_json(const char *path, struct owned_scene *out, char error[ERROR_MAX])
-{
-    struct owned_scene second;
-    const int fd = open(path, O_RDONLY | O_CLOEXEC);
-    memset(out, 0, sizeof *out);
-    if (fd < 0) {
-        snprintf(error, ERROR_MAX, "%s: %s", path, strerror(errno));
-        return false;
-    }
-    struct json_reader *reader = json_open(fd);
-    json_allow_links(reader);
-    enum json_outcome outcome = json_next(reader, out);
-    bool good = outcome == JSON_SCENE;
-    if (good)
-        outcome = json_next(reader, &second);
-    if (good && outcome == JSON_SCENE) {
-        snprintf(error, ERROR_MAX, "%s: expected one scene, found a second one", path);
-        scene_clear(&second);
-        good = false;
-    } else if (outcome != JSON_END) {
-        snprintf(error, ERROR_MAX, "%s: %s", path, json_error(reader));
-        good = false;
-    }
-    json_close(reader);
-    close(fd);
-    return good;
-}
-
-struct fmb_robot_json {
-    struct owned_scene owner;
-    struct fmb_robot_world world;
-    char why[ERROR_MAX];
-};
-
 int fmb_robot_json_read(const char *path, struct fmb_robot_json **out)
 {
     struct fmb_robot_json *json = *out = allocate(1, sizeof *json);
-    const bool good = read_json(path, &json->owner, json->why);
-    json->world = (struct fmb_robot_world){&json->owner.scene, json->owner.links, NULL};
-    return good ? 0 : -1;
+    struct owned_scene second = {.dim = 0};
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    json->world.scene = &json->owner.scene;
+    if (fd < 0) {
+        snprintf(json->why, sizeof json->why, "%s: %s", path, strerror(errno));
+        return -1;
+    }
+    struct json_reader *reader = json_open(fd);
+    json_allow_links(reader);
+    enum json_outcome outcome = json_next(reader, &json->owner);
+    if (outcome == JSON_SCENE)
+        outcome = json_next(reader, &second);
+    if (outcome != JSON_END)
+        snprintf(
+            json->why, sizeof json->why, "%s: %s", path,
+            outcome == JSON_SCENE ? "expected one scene, found a second one" : json_error(reader));
+    json->world.links = json->owner.links;
+    scene_clear(&second);
+    json_close(reader);
+    close(fd);
+    return outcome == JSON_END ? 0 : -1;
 }
 
 void fmb_robot_json_free(struct fmb_robot_json *json)
@@ -96,16 +77,16 @@ void robot_world_print(const char *path, const char *text)
 bool robot_world_read(const char *path, const struct fmb_robot_options *options,
                       struct robot_world *out)
 {
-    char error[ERROR_MAX];
-    *out = (struct robot_world){.path = path};
+    *out = (struct robot_world){.json = NULL};
     if (!is_xml(path)) {
-        if (!read_json(path, &out->json, error)) {
-            complain("%s%s", error,
-                     strstr(error, ": no body has the ") ? " (--ignore takes names of links)" : "");
-            return false;
-        }
-        out->world = (struct fmb_robot_world){&out->json.scene, out->json.links, path};
-        return true;
+        const bool good = fmb_robot_json_read(path, &out->json) == 0;
+        const char *why = out->json->why;
+        if (!good)
+            complain("%s%s", why,
+                     strstr(why, ": no body has the ") ? " (--ignore takes names of links)" : "");
+        out->world = out->json->world;
+        out->world.name = path;
+        return good;
     }
     struct fmb_robot_options as_obstacle = *options;
     as_obstacle.srdf = NULL;
@@ -125,7 +106,7 @@ bool robot_world_read(const char *path, const struct fmb_robot_options *options,
 
 void robot_world_clear(struct robot_world *world)
 {
-    scene_clear(&world->json);
+    fmb_robot_json_free(world->json);
     fmb_robot_scene_free(world->scene);
     fmb_robot_free(world->robot);
 }
@@ -134,8 +115,8 @@ void robot_world_set_groups(struct robot_world *worlds, size_t count)
 {
     int64_t most = 0;
     for (size_t w = 0; w < count; w++)
-        for (size_t i = 0; i < worlds[w].json.scene.placement_count; i++) {
-            const int64_t group = worlds[w].json.scene.placements[i].group;
+        for (size_t i = 0; worlds[w].json && i < worlds[w].world.scene->placement_count; i++) {
+            const int64_t group = worlds[w].world.scene->placements[i].group;
             most = group > most ? group : most;
         }
     for (size_t w = 0; w < count; w++)

@@ -6,10 +6,15 @@
 #include "fmb_robot.h"
 #include "scene.h"
 
+struct fmb_robot_json {
+    struct owned_scene owner;
+    struct fmb_robot_world world;
+    char why[4800];
+};
+
 struct robot_world {
-    const char *path;
-    struct owned_scene json;       /* of JSON */
-    struct fmb_robot *robot;       /* of URDF; NULL: JSON */
+    struct fmb_robot_json *json;   /* NULL: URDF */
+    struct fmb_robot *robot;       /* NULL: JSON */
     struct fmb_robot_scene *scene; /* of the robot, at home */
     struct fmb_robot_world world;  /* for fmb_robot_scene() */
 };

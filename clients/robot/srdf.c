@@ -13,7 +13,6 @@
 struct srdf {
     struct fmb_robot *robot;
     size_t known;                /* names of links that the robot has */
-    struct robot_name *unknown;  /* table of other names; entries belong to the tree */
     struct robot_pairs disabled; /* pairs, sorted at the end */
 };
 
@@ -30,8 +29,7 @@ static unsigned read_body(struct srdf *srdf, const struct xml_element *node, con
     srdf->known += found != NULL;
     if (found)
         return srdf->robot->body_of_link[found->index];
-    if (robot_add_name(tree, &srdf->unknown, name, &first))
-        robot_say(&srdf->robot->unknown, "%.80s", name);
+    robot_add_name(tree, &srdf->robot->unknown, name, &first);
     return ROBOT_NO_BODY;
 }
 
@@ -108,16 +106,11 @@ bool robot_read_srdf(struct fmb_robot *robot)
 {
     struct srdf srdf = {.robot = robot};
     struct robot *tree = &robot->tree;
-    const bool before = tree->bad;
-    tree->bad = false;
     const struct xml_element *root = urdf_open(tree, robot->srdf);
     if (root)
         read_elements(&srdf, root);
-    robot->unknown_count = HASH_COUNT(srdf.unknown);
-    HASH_CLEAR(hh, srdf.unknown);
     bool good = !tree->bad;
-    tree->bad = before;
-    if (good && srdf.known == 0 && robot->unknown_count > 0) {
+    if (good && srdf.known == 0 && robot->unknown) {
         robot_say(&robot->tree.errors,
                   "%s: no link that it names is one of %s: is it of another robot?", robot->srdf,
                   robot->tree.path);
