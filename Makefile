@@ -296,7 +296,7 @@ libraries := -lcjson -lexpat -llcm -lglib-2.0 -lseccomp -lz -lgmp -lm
 programs := $(B)/fmbd $(B)/fmb
 demo_programs := $(B)/netns
 .PHONY: programs
-programs: $(programs) $(B)/libfmb.a $(B)/libfmb-client.a $(B)/libfmb-robot.a $(shared_libraries) $(demo_programs)
+programs: $(programs) $(B)/fmb-check-path $(B)/libfmb.a $(B)/libfmb-client.a $(B)/libfmb-robot.a $(shared_libraries) $(demo_programs)
 $(programs): linking = $(link_whole)
 $(B)/fmbd: $(O)/service/main.o $(product) $(B)/libfmb.a
 $(B)/fmb: $(O)/clients/fmb.o $(B)/libfmb-client.a $(product) $(B)/libfmb.a
@@ -304,6 +304,10 @@ $(demo_programs): $(B)/%: $(O)/clients/demo/%.o
 
 $(programs) $(demo_programs):
 	$(link)
+
+$(B)/fmb-check-path: clients/robot/fmb-check-path
+	@mkdir -p $(@D)
+	$(call say,COPY,$@) $(INSTALL) $< $@
 
 # ---- The page of --html: text, style and scripts in one file, compiled in ----
 
@@ -344,7 +348,7 @@ HELP_FROM ?= $(B)
 M := $(B)/man
 .PHONY: manual
 manual: $(M)/fmb.1
-$(M)/fmb.1: clients/manual/pages.sh clients/manual/man.awk $(HELP_FROM)/fmb $(HELP_FROM)/fmbd
+$(M)/fmb.1: clients/manual/pages.sh clients/manual/man.awk $(addprefix $(HELP_FROM)/,fmb fmbd fmb-check-path)
 	$(call say,MAN,$(M)) $< $(HELP_FROM) $(M)
 
 # ---- Settings: everything is built again when flags or lists of files change ----
@@ -422,6 +426,7 @@ install: all
 		share/bash-completion/completions lib/systemd/system,"$(root)/$d") \
 		"$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/fmb" "$(DESTDIR)$(PYTHONDIR)"
 	$(INSTALL) $(strip_option) $(programs) "$(root)/bin"
+	$(INSTALL) clients/robot/fmb-check-path "$(root)/bin"
 	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a $(B)/libfmb-robot.a "$(DESTDIR)$(LIBDIR)"
 	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
 	for name in $(basename $(notdir $(shared_libraries))); do \
@@ -447,7 +452,7 @@ install-strip: strip_option := -s
 install-strip: install
 
 uninstall:
-	cd "$(root)" && rm -rf bin/fmbd bin/fmb include/fmb.h include/fmb_batch.h \
+	cd "$(root)" && rm -rf bin/fmbd bin/fmb bin/fmb-check-path include/fmb.h include/fmb_batch.h \
 		include/fmb_client.h include/fmb_robot.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
 		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
 		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd

@@ -60,7 +60,7 @@ BEGIN {
 !described && /^$/ { heading(".SH", "DESCRIPTION"); described = 1; next }
 !described {
     sub(/^(usage:)? */, "")
-    match($0, /^[a-z]+( [a-z]+)*/)
+    match($0, /^[a-z]+([- ][a-z]+)*/)
     if (NR > 1) print ".br"
     print "\\fB" substr($0, 1, RLENGTH) "\\fR" text(substr($0, RLENGTH + 1))
     next

@@ -30,7 +30,7 @@ pressed() {
         [ "$(sed -n '/^OPTIONS$/,/^[A-Z]/p' <<< "$output" | grep -c '^       -')" = "$(grep -c '^  -' <<< "$said")" ]
         [[ ! $output =~ --help$'\n'\ *[A-Z] || $said == *'--help  '* ]]
         count=$((count + 1))
-    done < <(commands fmb; echo fmbd)
+    done < <(commands fmb; echo fmbd; echo fmb-check-path)
     [ $count -gt 10 ]
     [ "$(find "$FMB_BUILD/man" -type f | wc -l)" = $count ]
 }

@@ -41,7 +41,8 @@ get() {
     [ -f "$root/lib/systemd/system/fmbd.service" ]
     grep -q '^ExecStart="/usr/bin/fmbd"$' "$root/lib/systemd/system/fmbd.service"
     [ -z "$(find "$root/etc/systemd" -name 'fmbd*')" ]
-    for file in man1/fmb-log-cut.1 man8/fmbd.8; do [ -f "$root/usr/share/man/$file.gz" ]; done
+    inside fmb-check-path --help > /dev/null
+    for file in man1/fmb-log-cut.1 man1/fmb-check-path.1 man8/fmbd.8; do [ -f "$root/usr/share/man/$file.gz" ]; done
     # Programs of the bus alone need LCM.
     ! inside dpkg -s libfmb0
 }

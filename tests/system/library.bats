@@ -25,10 +25,10 @@ setup() {
 @test "what is installed is there for all users, whatever the umask" {
     [ "$(stat -c %a "$root")" = 755 ]
     [ -z "$(find "$root" ! -type l ! -perm -444 -o -type d ! -perm -755)" ]
-    [ "$(find "$root" -type f -perm /111 -printf '%f %m\n' | sort | xargs)" = 'fmb 755 fmbd 755' ]
+    [ "$(find "$root" -type f -perm /111 -printf '%f %m\n' | sort | xargs)" = 'fmb 755 fmb-check-path 755 fmbd 755' ]
     cp "$FMB_BUILD"/man/*.[18] msgs/*.lcm "$BATS_TEST_TMPDIR"
     (cd "$BATS_TEST_TMPDIR" && for name in *.*; do echo "$name"; done
-    for name in LICENSE fmb fmb fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb-robot.pc fmb.h fmb.pc \
+    for name in LICENSE fmb fmb fmb-check-path fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb-robot.pc fmb.h fmb.pc \
         fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmbd fmbd fmbd.service libfmb-client.a \
         libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
         libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
