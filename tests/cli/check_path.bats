@@ -27,7 +27,7 @@ wrong() {
 @test "wrong bounds in the program are found" {
     poses=Random.test_no_interval_that_holds_is_contradicted_by_a_pose
     curves=Random.test_speed_and_curvature_are_within_the_bounds
-    wrong $poses '>> 2 * depth + 3' '>> 2 * depth + 4'
+    wrong Known.test_each_kind_of_interval_proves '>> 2 * depth + 3' '>> 2 * depth + 4'
     wrong $poses 'most + clearance' '0'
     wrong $poses 'for s in (0, END)' 'for s in (0, 0)'
     wrong $curves 'turning + 2 * spin' 'turning + spin'
