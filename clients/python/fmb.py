@@ -86,6 +86,9 @@ _World = _struct("fmb_robot_world", ("scene", ctypes.POINTER(_Placed)), ("links"
 _Options = _struct("fmb_robot_options", ("srdf", _TEXT), ("package_path", _TEXT), ("base", _REAL * 6), ("sides", _INT),
                    ("excess", _REAL), ("objects", _INT), ("bus", _INT))
 
+_ClientOptions = _struct("fmb_client_options", ("url", _TEXT), ("prefix", _TEXT), ("timeout", _REAL), ("tries", _INT),
+                         ("within", _REAL))
+
 
 def _load(soname: str, abi: str, *functions: Any) -> ctypes.CDLL:
     """Loads a library and declares functions: name, result and arguments. abi: of its interface number, or ""."""
@@ -134,16 +137,15 @@ _lib = _load(
     _SONAME, "fmb_flat_abi",
     ("fmb_version", _TEXT),
     ("fmb_client_status_text", _TEXT, _INT),
+    ("fmb_client_open", _POINTER, _POINTER, _TEXT, _SIZE),
     ("fmb_client_close", None, _POINTER),
-    ("fmb_flat_open", _POINTER, _TEXT, _TEXT, _REAL, _INT, _REAL, _TEXT, _SIZE),
     ("fmb_flat_body_make", _INT, _INT, _INT, _POINTER, _SIZE, _POINTER),
     ("fmb_flat_body_join", _INT, _POINTER, _SIZE, _POINTER),
     ("fmb_flat_body_free", None, _POINTER),
     ("fmb_flat_cylinder", _REAL, _REAL, _REAL, _INT, _POINTER),
-    ("fmb_flat_scene_make", _INT, _SIZE, *5 * (_POINTER,)),
+    ("fmb_flat_scene_make", _INT, _SIZE, *5 * (_POINTER,), _SIZE, _POINTER),
     ("fmb_flat_scene_free", None, _POINTER),
     ("fmb_flat_scene_forked", None, _POINTER),
-    ("fmb_flat_scene_ignore", _INT, _POINTER, _POINTER, _SIZE),
     ("fmb_flat_placements", ctypes.POINTER(_Placement), _POINTER),
     ("fmb_flat_take", None, _POINTER, _POINTER, _SIZE),
     ("fmb_flat_why", _TEXT, _POINTER),
@@ -740,9 +742,9 @@ class Client(_Handle):
         bus = url or os.environ.get("LCM_DEFAULT_URL")
         self._start = "fmbd" + (f' --lcm-url "{bus}"' if bus else "") + (
             f" --prefix {prefix}" if prefix else "")
-        self._handle = _lib.fmb_flat_open(_text("url", url), _text("prefix", prefix),
-                                          _float("timeout", timeout), tries,
-                                          _float("within", within), why, _WHY_MAX)
+        options = _ClientOptions(_text("url", url), _text("prefix", prefix), _float("timeout", timeout), tries,
+                                 _float("within", within))
+        self._handle = _lib.fmb_client_open(ctypes.byref(options), why, _WHY_MAX)
         if not self._handle:
             raise BusError(why.value.decode(errors="replace"))
 
@@ -818,20 +820,19 @@ class Scene(_Handle):
         if len(self.names) != n:
             raise ValueError(f"names: expected {n}, found {len(self.names)}")
         texts = [_text(f"names[{i}]", name) for i, name in enumerate(self.names)]
+        pairs = _flat("ignored", [] if ignored is None else ignored, "q", ("m", 2))[0]
         handle = ctypes.c_void_p()
         status = _lib.fmb_flat_scene_make(
             n, _handles(self.bodies),
             _pointer(_flat("ids", range(1, n + 1) if ids is None else ids, "q", (n,))[0]),
             _pointer(_flat("groups", [0] * n if groups is None else groups, "q", (n,))[0]),
-            (ctypes.c_char_p * n)(*texts), ctypes.byref(handle))
-        pairs = _flat("ignored", [] if ignored is None else ignored, "q", ("m", 2))[0]
+            (ctypes.c_char_p * n)(*texts), _pointer(pairs), len(pairs), ctypes.byref(handle))
         self.ignored: Any = (_rows(pairs) if len(pairs) else []) if numpy is None else numpy.array(pairs).reshape(-1, 2)
         self.links: tuple[Optional[str], ...] = (None,) * n
         self.duration, self.margin = None, 0.0
         self._robot: Any = None
         self._handle = handle.value
         self._check(status)
-        self._check(_lib.fmb_flat_scene_ignore(self._handle, _pointer(pairs), len(pairs)))
         self.place(positions, orientations, velocities)
 
     @staticmethod

@@ -105,7 +105,7 @@ struct fmb_flat_scene {
     char *names;
     struct fmb_prepared *prepared;
     struct column listed, ignored; /* unsigned [][2]: indices of placements */
-    struct column own;             /* likewise: the pairs of fmb_flat_scene_ignore() */
+    struct column own;             /* likewise: the pairs of fmb_flat_scene_make() */
     size_t own_count;
     struct column memory; /* bytes: of a struct fmb_scene_state */
     /* The scene that was decided in `memory`, if it can be begun again, else NULL; and the number
@@ -169,9 +169,27 @@ static int fill_scene(struct fmb_flat_scene *scene, const struct fmb_body *const
     return FMB_OK;
 }
 
+/* Converts indices of placements. */
+static int convert(struct fmb_flat_scene *scene, struct column *column, const char *argument,
+                   const int64_t *pairs, size_t count)
+{
+    if (!reserve(column, count, sizeof(unsigned[2])))
+        return refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0);
+    unsigned *out = column->data;
+    for (size_t i = 0; i < 2 * count; i++) {
+        if ((uint64_t) pairs[i] >= scene->placement_count) {
+            snprintf(scene->why, sizeof scene->why, "%s[%zu]: there is no body %" PRId64, argument,
+                     i / 2, pairs[i]);
+            return FMB_BAD_PAIR;
+        }
+        out[i] = (unsigned) pairs[i];
+    }
+    return FMB_OK;
+}
+
 int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, const int64_t *ids,
-                        const int64_t *groups, const char *const *names,
-                        struct fmb_flat_scene **out)
+                        const int64_t *groups, const char *const *names, const int64_t *ignored,
+                        size_t ignored_count, struct fmb_flat_scene **out)
 {
     struct fmb_flat_scene *scene = calloc(1, sizeof *scene);
     if (!scene)
@@ -190,7 +208,10 @@ int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, cons
     scene->names = malloc(bytes);
     if (!scene->placements || !scene->prepared || !scene->names)
         return refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0);
-    return fill_scene(scene, bodies, ids, groups, names);
+    const int status = fill_scene(scene, bodies, ids, groups, names);
+    scene->own_count = ignored_count;
+    return status != FMB_OK ? status
+                            : convert(scene, &scene->own, "ignored", ignored, ignored_count);
 }
 
 void fmb_flat_scene_free(struct fmb_flat_scene *scene)
@@ -290,31 +311,6 @@ void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *fro
 }
 
 /* ---- Deciding ---- */
-
-/* Converts indices of placements. */
-static int convert(struct fmb_flat_scene *scene, struct column *column, const char *argument,
-                   const int64_t *pairs, size_t count)
-{
-    if (!reserve(column, count, sizeof(unsigned[2])))
-        return refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0);
-    unsigned *out = column->data;
-    for (size_t i = 0; i < 2 * count; i++) {
-        if ((uint64_t) pairs[i] >= scene->placement_count) {
-            snprintf(scene->why, sizeof scene->why, "%s[%zu]: there is no body %" PRId64, argument,
-                     i / 2, pairs[i]);
-            return FMB_BAD_PAIR;
-        }
-        out[i] = (unsigned) pairs[i];
-    }
-    return FMB_OK;
-}
-
-int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, size_t count)
-{
-    const int status = convert(scene, &scene->own, "ignored", pairs, count);
-    scene->own_count = status == FMB_OK ? count : 0;
-    return status;
-}
 
 static bool reserve_answers(struct fmb_flat_scene *scene, size_t count)
 {
@@ -610,15 +606,4 @@ void fmb_flat_pack(const struct fmb_flat_scene *scene, void *data)
     else
         memset(data, 0, n * sizeof(int32_t));
     memcpy((int32_t *) data + n, scene->column[VERDICTS].data, n);
-}
-
-/* ---- The bus ---- */
-
-struct fmb_client *fmb_flat_open(const char *url, const char *prefix, double timeout, int tries,
-                                 double within, char *why, size_t size)
-{
-    return fmb_client_open(
-        &(struct fmb_client_options){
-            .url = url, .prefix = prefix, .timeout = timeout, .tries = tries, .within = within},
-        why, size);
 }

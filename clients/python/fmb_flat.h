@@ -62,19 +62,15 @@ struct fmb_flat_scene;
  *      ids     [count], 0 to 2^53 - 1
  *      groups  [count]
  *      names   [count]; NULL for a body without a name
+ *      ignored  [ignored_count][2], pairs that fmb_flat_decide() ignores unless it
+ *              is given a list of pairs
  * Out: *out    set unless the status is NO_MEMORY, for fmb_flat_why(); to be freed
  * Returns FMB_OK, FMB_NO_FRAMES (count is 0), FMB_DIMENSIONS_DIFFER, FMB_BAD_ID, FMB_BAD_NAME,
- * FMB_OVER_LIMIT (2^31 bodies), or NO_MEMORY. */
+ * FMB_BAD_PAIR, FMB_OVER_LIMIT (2^31 bodies), or NO_MEMORY. */
 int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, const int64_t *ids,
-                        const int64_t *groups, const char *const *names,
-                        struct fmb_flat_scene **out);
+                        const int64_t *groups, const char *const *names, const int64_t *ignored,
+                        size_t ignored_count, struct fmb_flat_scene **out);
 void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
-
-/* Sets the pairs of a scene that fmb_flat_decide() ignores unless it is given a list of pairs. May
- * be called once.
- * In:  pairs  [count][2]
- * Returns FMB_OK, FMB_BAD_PAIR or NO_MEMORY. */
-int fmb_flat_scene_ignore(struct fmb_flat_scene *scene, const int64_t *pairs, size_t count);
 
 /* Returns the placements. */
 const struct fmb_placement *fmb_flat_placements(const struct fmb_flat_scene *scene);
@@ -145,12 +141,6 @@ size_t fmb_flat_count(const struct fmb_flat_scene *scene);
  * are none frames      int64 [n][of a, of b], indices of the frames that have this gap statuses
  * int32 [n], FMB_OK, or why there is no verdict verdicts    uint8 [n], enum fmb_verdict; 0: none */
 void fmb_flat_pack(const struct fmb_flat_scene *scene, void *data);
-
-/* ---- The bus ---- */
-
-/* As fmb_client_open() with these options; to be closed with fmb_client_close(). */
-struct fmb_client *fmb_flat_open(const char *url, const char *prefix, double timeout, int tries,
-                                 double within, char *why, size_t size);
 
 #ifdef __cplusplus
 }

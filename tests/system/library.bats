@@ -35,18 +35,13 @@ setup() {
         sort | diff - <(find "$root" ! -type d -printf '%f\n' | sort)
 }
 
-@test "the examples build against the installed library, and query scenes" {
-    for example in scene robot; do
-        $compiler -std=c99 -Wall -Wextra -Werror clients/examples/$example.c \
-            $(pkg-config --static --cflags --libs fmb-client) -lm -o "$BATS_TEST_TMPDIR/$example"
-    done
+@test "the example builds against the installed library, and queries a scene" {
+    $compiler -std=c99 -Wall -Wextra -Werror clients/examples/scene.c \
+        $(pkg-config --static --cflags --libs fmb-client) -o "$BATS_TEST_TMPDIR/scene"
     start_fmbd
     "$BATS_TEST_TMPDIR/scene" > "$BATS_TEST_TMPDIR/in_process"
     [ -s "$BATS_TEST_TMPDIR/in_process" ]
     "$BATS_TEST_TMPDIR/scene" --bus | cmp - "$BATS_TEST_TMPDIR/in_process"
-    run "$BATS_TEST_TMPDIR/robot"
-    [ "$status" = 0 ]
-    [[ ${lines[-1]} == *', 11 bodies whole, '* ]]
     stop_fmbd
 }
 
