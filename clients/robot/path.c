@@ -209,7 +209,6 @@ static int list_directions(const struct fmb_robot_path *path, const struct path_
 static void enter_pairs(struct fmb_robot_path *path)
 {
     const struct path_direction spheres = {.kind = PATH_SPHERES};
-    const struct path_pose *poses = path_poses(path, 0.5);
     path->live_count = path->heap_count = path->leaf_count = path->work = 0;
     path->proven = INFINITY;
     double least = INFINITY, bound = -INFINITY;
@@ -219,15 +218,12 @@ static void enter_pairs(struct fmb_robot_path *path)
             const struct path_family *family = &path->families[k];
             const struct path_part *a = &path->parts[family->a];
             const double half = path_family_speed(path, family) / 2;
-            double centre[2][3];
-            path_centre(poses, a, centre[0]);
             for (size_t i = family->first; i < family->first + family->count; i++) {
                 const struct path_part *b = &path->parts[path->partner[i]];
-                path_centre(poses, b, centre[1]);
-                const double x = centre[1][0] - centre[0][0], y = centre[1][1] - centre[0][1],
-                             z = centre[1][2] - centre[0][2];
+                const double x = b->middle[0] - a->middle[0], y = b->middle[1] - a->middle[1],
+                             z = b->middle[2] - a->middle[2];
                 bound = sqrt(x * x + y * y + z * z) * (1 - 0x1p-36) - a->ball - b->ball - half -
-                        path_slack(path, family->a, path->partner[i]);
+                        a->slack - b->slack;
                 if (pass == 0 && bound < least) {
                     least = bound;
                     path_bounds_of(path, &family->chain, family->a, path->partner[i], &nearest);

@@ -23,6 +23,8 @@ struct path_part {
     double ball;          /* ... that contains the part */
     double reach;         /* bounds the distance of its points from the origin of the node */
     double error;         /* of its vertices in the node */
+    double slack;         /* of the edge: its share of the error of a pair's values */
+    double middle[3];     /* of the edge: the centre at 1/2, in the world */
 };
 
 /* The joints that move between two nodes, from a to b. Those whose value changes on the edge are

@@ -116,13 +116,17 @@ static bool bound_poses(struct fmb_robot_path *path)
  * a gap is less. Twice that, since edges and directions have lengths of 1 up to 2^-40. */
 double path_slack(const struct fmb_robot_path *path, unsigned a, unsigned b)
 {
-    double sum = 0x1p-900;
-    for (int end = 0; end < 2; end++) {
-        const struct path_part *part = &path->parts[end ? b : a];
-        sum += path->error[part->node] + part->error +
-               (4 * path->turn_error + 0x1p-43) * (path->far[part->node] + part->reach);
+    return path->parts[a].slack + path->parts[b].slack;
+}
+
+static void bound_parts(struct fmb_robot_path *path)
+{
+    for (size_t i = 0; i < path->part_count; i++) {
+        struct path_part *part = &path->parts[i];
+        part->slack = 2 * OUTWARD *
+                      (path->error[part->node] + part->error + 0x1p-900 +
+                       (4 * path->turn_error + 0x1p-43) * (path->far[part->node] + part->reach));
     }
-    return 2 * sum * OUTWARD;
 }
 
 /* Sets the poses of all links. Components of a quaternion that are so small that the engine refuses
@@ -236,6 +240,9 @@ bool path_edge_begin(struct fmb_robot_path *path)
         path->slots[i].time = NAN;
     if (!bound_poses(path))
         return false;
+    bound_parts(path);
+    for (size_t i = 0; i < path->part_count; i++)
+        path_centre(path_poses(path, 0.5), &path->parts[i], path->parts[i].middle);
     for (size_t i = 0; i < path->family_count; i++) {
         begin_chain(path, &path->families[i].chain);
         path->lever = fmax(path->lever, lever_of(path, &path->families[i]));
