@@ -14,6 +14,7 @@ see_tests/encode := msgs/codec service/fmb service/answer
 see_tests/bus := tests/encode tests/bench $(see_tests/bench) service $(see_service)
 see_tests/robot := tests/bench tests/oracle service/fmb
 see_tests/hostile := $(GEN)
+see_tests/path := clients clients/robot $(see_clients/robot)
 see_tests/system := tests/hostile $(GEN)
 see_tests/mesh := clients/mesh clients/common service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
@@ -30,7 +31,7 @@ see_tests/unit := $(call fmb,number frame filter article tree limbs gap support 
 
 test_programs := plain:system/plain busy:system/busy fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
-	mesh/make-mesh:mesh/make_mesh $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
+	mesh/make-mesh:mesh/make_mesh path-planted:path/planted $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
 measures := accuracy:campaign/accuracy checked:checked/checked \
 	hull-poses:bench/hull_poses bench/bench:bench/bench bus/bench-bus:bus/bench_bus \
 	bus/echo:bus/echo robot/robot:robot/robot
@@ -98,6 +99,7 @@ wraps_test_log_cut := $(call wraps,page_take pread64)
 wraps_test_answer_scene := $(call wraps,malloc calloc realloc aligned_alloc)
 wraps_test_bus := $(call wraps,bus_socket_drops sched_yield)
 wraps_test_path := $(call wraps,path_bounds_of)
+wraps_path-planted := $(wraps_test_path)
 
 # Kernels are optimised in all modes.
 compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees)

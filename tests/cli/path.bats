@@ -233,6 +233,36 @@ refused() {
     [ "$(cat other)" = mine ]
 }
 
+@test "fmb-check-path accepts proofs, but not those of bounds that are halved" {
+    check="/usr/bin/python3 -S $(dirname "$DEMO")/../robot/fmb-check-path"
+    # A ball at a distance of 1 from a joint, and a wall that it comes near in the middle.
+    echo '<robot name="r"><link name="base"/><link name="ball"><collision><origin xyz="1 0 0"/><geometry>
+        <sphere radius="0.125"/></geometry></collision></link><joint name="turn" type="continuous">
+        <parent link="base"/><child link="ball"/><axis xyz="0 0 1"/></joint></robot>' > robot.urdf
+    echo '{"dim": 3, "bodies": [{"id": 9, "shape": "box", "size": [1,4,4], "position": [1.75,0,0]}]}' > world.json
+    sed 's/1.75/1.628/' world.json > near.json
+    printf '%s\n' turn -0.25 0.25 -0.125 > beside.csv
+    printf '%s\n' turn 1.2 0.7 > towards.csv
+    planted() { # FACTOR WHAT TABLE WORLD OPTION...
+        "$TOOLS/path-planted" "$1" "$2" robot.urdf --joints-csv "$3" --with "$4" --proof proof --force "${@:5}" 2> /dev/null || true
+        run $check proof
+    }
+    planted 1 curve beside.csv near.json
+    ended 0
+    planted 0.5 curve beside.csv near.json
+    ended 1
+    planted 1 speed towards.csv world.json --clearance 0.38
+    ended 0
+    planted 0.5 speed towards.csv world.json --clearance 0.38
+    ended 1
+    # And those of a robot with all kinds of intervals.
+    cd "$DEMO" || return
+    run "$FMB" path robot.urdf --joints-csv path.csv --with world.json --clearance 0 --proof "$BATS_TEST_TMPDIR/demo"
+    ended 3
+    run $check "$BATS_TEST_TMPDIR/demo"
+    ended 3
+}
+
 @test "--check compares the robot, the bodies and the pairs of a proof" {
     check() {
         run --separate-stderr "$FMB" path --check "${1:-proof}" robot.urdf --with world.json "${@:2}"
