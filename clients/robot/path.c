@@ -205,6 +205,23 @@ static int list_directions(const struct fmb_robot_path *path, const struct path_
 
 /* ---- Phases ---- */
 
+/* Enters a pair, for the whole edge or for what is searched of it, in intervals. */
+static void enter_pair(struct fmb_robot_path *path, const struct path_family *family, unsigned b,
+                       double bound)
+{
+    double low = 0;
+    path->live =
+        allocate_grow(path->live, &path->live_capacity, path->live_count + 1, sizeof *path->live);
+    path_bounds_of(path, &family->chain, family->a, b, &path->live[path->live_count]);
+    for (int level = 0; low < path->until; level++)
+        if (low + ldexp(1, -level) <= path->until) {
+            push(path, (struct path_entry){path->phase == LEAST ? bound : low, low,
+                                           path->live_count, level});
+            low += ldexp(1, -level);
+        }
+    path->live_count++;
+}
+
 /* Enters all pairs that their spheres do not prove. */
 static void enter_pairs(struct fmb_robot_path *path)
 {
@@ -212,7 +229,7 @@ static void enter_pairs(struct fmb_robot_path *path)
     path->live_count = path->heap_count = path->leaf_count = path->work = 0;
     path->proven = INFINITY;
     double least = INFINITY, bound = -INFINITY;
-    for (int pass = path->phase == LEAST ? 0 : 1; pass < 2; pass++) {
+    for (int pass = path->phase == LEAST && path->until == 1 ? 0 : 1; pass < 2; pass++) {
         struct path_bounds nearest;
         for (size_t k = 0; k < path->family_count; k++) {
             const struct path_family *family = &path->families[k];
@@ -230,16 +247,11 @@ static void enter_pairs(struct fmb_robot_path *path)
                 }
                 if (pass == 0)
                     continue;
-                if (bound > 0 && bound >= target(path)) {
+                if (bound > 0 && bound >= target(path) && path->until == 1) {
                     prove(path, family->a, path->partner[i], 0, 0, bound, &spheres);
                     continue;
                 }
-                path->live = allocate_grow(path->live, &path->live_capacity, path->live_count + 1,
-                                           sizeof *path->live);
-                path_bounds_of(path, &family->chain, family->a, path->partner[i],
-                               &path->live[path->live_count]);
-                push(path, (struct path_entry){path->phase == LEAST ? bound : 0, 0,
-                                               path->live_count++, 0});
+                enter_pair(path, family, path->partner[i], bound);
             }
         }
         struct fmb_gap gap;
@@ -377,6 +389,14 @@ static bool take(struct fmb_robot_path *path, struct fmb_robot_edge *out)
     return false;
 }
 
+static void begin(struct fmb_robot_path *path, double until)
+{
+    path->closest = path->hit = INFINITY;
+    path->until = until;
+    path->phase = LEAST;
+    enter_pairs(path);
+}
+
 /* ---- Functions of the header ---- */
 
 int fmb_robot_path_begin(struct fmb_robot_scene *scene, double clearance,
@@ -472,10 +492,18 @@ int path_edge_of(struct fmb_robot_path *path, const double *from, const double *
 {
     if (path_set_edge(path, from, to) != 0)
         return -1;
-    path->closest = path->hit = INFINITY;
-    path->phase = LEAST;
-    enter_pairs(path);
+    begin(path, 1);
     return 0;
+}
+
+double path_prove_until(struct fmb_robot_path *path, double until)
+{
+    struct fmb_robot_edge edge;
+    begin(path, until);
+    while (!take(path, &edge))
+        ;
+    path->phase = DONE;
+    return edge.clearance;
 }
 
 int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const double *to)

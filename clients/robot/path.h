@@ -128,6 +128,7 @@ struct fmb_robot_path {
     struct path_entry *heap;
     size_t heap_count, heap_capacity;
     int phase;
+    double until; /* what is searched ends here: 1 but for path_prove_until() */
     size_t work;
     double proven, closest, closest_at, hit;
     unsigned closest_pair[2], hit_pair[2];
@@ -171,6 +172,11 @@ void path_turn_back(const double r[3][3], const double v[3], double out[3]); /* 
 
 /* Sets the values of all joints of the tree at both ends. Returns -1 after an error. */
 int path_set_edge(struct fmb_robot_path *path, const double *from, const double *to);
+
+/* Searches the edge again, up to a multiple of 2^-PATH_UNTIL_LEVEL. Returns the clearance that is
+ * proven, or 0. */
+enum { PATH_UNTIL_LEVEL = 4 };
+double path_prove_until(struct fmb_robot_path *path, double until);
 
 /* As fmb_robot_path_edge(), for values of all joints of the tree. */
 int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to);

@@ -287,19 +287,24 @@ static const struct path_chain *chain_of(const struct fmb_robot_path *path,
 void path_proof_edge(struct path_proof *proof, struct fmb_robot_path *path, size_t number,
                      const struct fmb_robot_edge *answer)
 {
-    const bool proven = answer->verdict == FMB_ROBOT_FREE || answer->verdict == FMB_ROBOT_NEAR;
+    double to = 1, clearance = answer->clearance;
+    if (answer->verdict != FMB_ROBOT_FREE && answer->verdict != FMB_ROBOT_NEAR) {
+        to = ldexp(floor(ldexp(answer->at[0], PATH_UNTIL_LEVEL)), -PATH_UNTIL_LEVEL);
+        clearance = to > 0 ? path_prove_until(path, to) : 0;
+        to = clearance > 0 ? to : 0;
+    }
     /* Less than is proven, by more than what the errors of doubles and those of the checker are. */
-    const double all = 1, none = 0, given = fmin(answer->clearance, 0x1p100) * (1 - 0x1p-16);
+    const double given = fmin(clearance, 0x1p100) * (1 - 0x1p-16);
     struct path_leaf *leaves = path->leaves;
     struct path_bounds bounds;
     struct line line;
     size_t family = 0;
     begin_line(&line);
     json_integer(&line.json, "edge", (int64_t) number);
-    write_vector(&line, "to", proven ? &all : &none, 1);
-    write_vector(&line, "clearance", proven ? &given : &none, 1);
+    write_vector(&line, "to", &to, 1);
+    write_vector(&line, "clearance", &given, 1);
     end_line(proof, &line);
-    if (!proven || path->leaf_count == 0)
+    if (to == 0 || path->leaf_count == 0)
         return;
     qsort(leaves, path->leaf_count, sizeof *leaves, by_pair_and_time);
     for (size_t i = 0; i < path->leaf_count; i++) {

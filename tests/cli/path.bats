@@ -221,9 +221,10 @@ refused() {
 [null,null,null,[0,1],null]
 [null,2,"0x1p+0",null,null]
 [null,null,null,[0,1],null]
-[null,3,"0x0p+0",null,null]'
-    # The intervals of each pair follow each other from 0 to 1.
-    jq -e -s '[.[].proof // empty | map(.[1] | -. | exp2) | add == 1] == [true, true]' lines
+[null,3,"0x1p-2",null,null]
+[null,null,null,[0,1],null]'
+    # The intervals of each pair follow each other from 0 to the end of what is proven.
+    jq -e -s '[.[].proof // empty | map(.[1] | -. | exp2) | add == 1] == [true, true, false]' lines
     cp proof first
     path --proof proof
     cmp first proof
