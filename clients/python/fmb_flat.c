@@ -320,6 +320,17 @@ static bool reserve_answers(struct fmb_flat_scene *scene, size_t count)
     return ok;
 }
 
+/* Appends rows to the columns, which have space for them. from: their data, of each column. */
+static void add_rows(struct fmb_flat_scene *scene, const void *const from[COLUMN_COUNT],
+                     size_t count)
+{
+    for (int c = 0; c < COLUMN_COUNT; c++)
+        if (scene->has[c] && count > 0)
+            memcpy((char *) scene->column[c].data + scene->count * column_width[c], from[c],
+                   count * column_width[c]);
+    scene->count += count;
+}
+
 static void *column_if(struct fmb_flat_scene *scene, int column)
 {
     return scene->has[column] ? scene->column[column].data : NULL;
@@ -389,11 +400,7 @@ static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *sce
         const void *from[COLUMN_COUNT] = {answers.pairs,    answers.verdicts, NULL,
                                           answers.contacts, answers.boxes,    answers.points,
                                           answers.gaps};
-        for (int c = 0; c < COLUMN_COUNT; c++)
-            if (flat->has[c] && answers.count)
-                memcpy((char *) flat->column[c].data + flat->count * column_width[c], from[c],
-                       answers.count * column_width[c]);
-        flat->count += answers.count;
+        add_rows(flat, from, answers.count);
     }
     if (status == FMB_OK && scene->ignored == flat->own.data) {
         flat->state = state;
@@ -407,30 +414,22 @@ static int decide_steps(struct fmb_flat_scene *flat, const struct fmb_scene *sce
 static void append(void *user, const struct fmb_client_answer *of)
 {
     struct fmb_flat_scene *scene = user;
+    static const double none[2][FMB_DIM_MAX] = {{NAN, NAN, NAN}, {NAN, NAN, NAN}};
+    static const struct fmb_gap no_gap = {.bounds = {NAN, NAN}};
     const struct fmb_answer *answer = &of->answer;
-    const size_t k = scene->count;
-    scene->failed = scene->failed || !reserve_answers(scene, k + 1);
-    if (scene->failed)
-        return;
-    scene->count++;
-    ((unsigned char *) scene->column[VERDICTS].data)[k] = (unsigned char) answer->verdict;
-    ((int32_t *) scene->column[STATUSES].data)[k] = of->status;
-    if (scene->has[PAIRS])
-        memcpy((unsigned(*)[2]) scene->column[PAIRS].data + k, (unsigned[2]){of->a, of->b},
-               sizeof(unsigned[2]));
-    for (int i = 0; scene->has[CONTACTS] && i < 2; i++)
-        ((double(*)[2]) scene->column[CONTACTS].data)[k][i] =
-            answer->has_contact ? answer->contact[i] : NAN;
-    for (int i = 0; scene->has[BOXES] && i < 2; i++)
-        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            ((double(*)[2][FMB_DIM_MAX]) scene->column[BOXES].data)[k][i][axis] =
-                answer->has_box ? answer->box[i][axis] : NAN;
-    for (int i = 0; scene->has[POINTS] && i < 1 + FMB_DIM_MAX; i++)
-        ((double(*)[1 + FMB_DIM_MAX]) scene->column[POINTS].data)[k][i] =
-            answer->has_point ? answer->point[i] : NAN;
-    if (scene->has[GAPS])
-        ((struct fmb_gap *) scene->column[GAPS].data)[k] =
-            answer->has_gap ? answer->gap : (struct fmb_gap){.bounds = {NAN, NAN}};
+    const unsigned pair[2] = {of->a, of->b};
+    const unsigned char verdict = (unsigned char) answer->verdict;
+    const int32_t status = of->status;
+    const void *const from[COLUMN_COUNT] = {pair,
+                                            &verdict,
+                                            &status,
+                                            answer->has_contact ? answer->contact : none[0],
+                                            answer->has_box ? answer->box : none,
+                                            answer->has_point ? answer->point : none[0],
+                                            answer->has_gap ? &answer->gap : &no_gap};
+    scene->failed = scene->failed || !reserve_answers(scene, scene->count + 1);
+    if (!scene->failed)
+        add_rows(scene, from, 1);
 }
 
 /* Drops the last answers; the next ones have these columns. */

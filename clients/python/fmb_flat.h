@@ -62,8 +62,7 @@ struct fmb_flat_scene;
  *      ids     [count], 0 to 2^53 - 1
  *      groups  [count]
  *      names   [count]; NULL for a body without a name
- *      ignored  [ignored_count][2], pairs that fmb_flat_decide() ignores unless it
- *              is given a list of pairs
+ *      ignored [ignored_count][2], pairs that fmb_flat_decide() ignores unless it is given a list
  * Out: *out    set unless the status is NO_MEMORY, for fmb_flat_why(); to be freed
  * Returns FMB_OK, FMB_NO_FRAMES (count is 0), FMB_DIMENSIONS_DIFFER, FMB_BAD_ID, FMB_BAD_NAME,
  * FMB_BAD_PAIR, FMB_OVER_LIMIT (2^31 bodies), or NO_MEMORY. */
