@@ -677,13 +677,11 @@ class Answers(Sequence):
         n, column, view = self._count, self._columns[name], None
         if name == "pairs" and self._pairs is not None:
             view = self._pairs if numpy is None else numpy.asarray(self._pairs)
-        elif column and numpy is not None:
-            offset, code, shape, _ = column
-            view = numpy.frombuffer(self._data, code, n * math.prod(shape), n * offset).reshape((n,) + shape)
         elif column:
             offset, code, shape, row = column
             size = (n or 1) * row.size
             view = memoryview(self._data).cast("B")[n * offset:n * offset + size].cast(code, (n or 1,) + shape)[:n]
+            view = view if numpy is None else numpy.asarray(view)
         view = self.__dict__[name] = _rows(view)
         return view
 

@@ -2,7 +2,6 @@
 
 #include "allocate.h"
 #include "enclosure.h"
-#include "fmb_client.h"
 #include "number.h"
 #include "robot_scene.h"
 #include "turn.h"
@@ -98,12 +97,8 @@ static void find_joints(struct fmb_robot *robot)
 static bool take_options(struct fmb_robot *robot, const struct fmb_robot_options *options)
 {
     struct robot_lines *errors = &robot->tree.errors;
-    robot->options =
-        (struct robot_body_options){.sides = options->sides ? options->sides : ENCLOSURE_SIDES,
-                                    .objects = options->objects,
-                                    .package_path = options->package_path,
-                                    .excess = options->excess,
-                                    .bytes_max = options->bus ? FMB_CLIENT_BODY_BYTES_MAX : 0};
+    robot->options = *options;
+    robot->options.sides = options->sides ? options->sides : ENCLOSURE_SIDES;
     robot->srdf = options->srdf;
     robot->base = POSE_IDENTITY;
     bool good = true;

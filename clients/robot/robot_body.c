@@ -3,6 +3,7 @@
 
 #include "allocate.h"
 #include "enclosure.h"
+#include "fmb_client.h"
 #include "mesh_hull.h"
 #include "mesh.h"
 #include "output.h"
@@ -17,7 +18,7 @@
 /* The frames of the body under construction. */
 struct frames {
     struct robot *robot;
-    const struct robot_body_options *options;
+    const struct fmb_robot_options *options;
     struct owned_scene *scene;
     struct robot_meshes *meshes;
     const struct pose *placed; /* of the current element in the body; NULL: at its origin */
@@ -286,8 +287,8 @@ static enum fmb_status fit_body(struct frames *frames)
 {
     size_t most = FMB_HULL_VERTICES_MAX, found;
     enum fmb_status status = FMB_OK;
-    while (most > 1 && frames->options->bytes_max > 0 &&
-           count_bytes(frames, most) > frames->options->bytes_max)
+    while (most > 1 && frames->options->bus &&
+           count_bytes(frames, most) > FMB_CLIENT_BODY_BYTES_MAX)
         most--;
     for (size_t i = 0; i < frames->count && status == FMB_OK; i++) {
         struct given_frame *frame = &frames->frame[i];
@@ -303,7 +304,6 @@ static enum fmb_status fit_body(struct frames *frames)
             frame->radius =
                 frame->radius == 0 ? radius : nextafter(frame->radius + radius, INFINITY);
         }
-        frames->meshes->rounded += frame->radius > 0;
         frames->meshes->excess = fmax(frames->meshes->excess, frame->radius);
     }
     return status;
@@ -315,11 +315,11 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
     enum fmb_status status = fit_body(frames);
     const size_t bytes = scene_body_bytes(frames->frame, frames->count);
     size_t bad;
-    if (frames->options->bytes_max > 0 && bytes > frames->options->bytes_max) {
+    if (frames->options->bus && bytes > FMB_CLIENT_BODY_BYTES_MAX) {
         robot_refuse(frames->robot, first->line,
                      "%zu frames take %zu bytes in a message, which has space for %d: simplify its "
                      "meshes, or give fewer --sides",
-                     frames->count, bytes, (int) frames->options->bytes_max);
+                     frames->count, bytes, FMB_CLIENT_BODY_BYTES_MAX);
         return NULL;
     }
     if (status == FMB_OK)
@@ -331,7 +331,7 @@ static const struct fmb_body *make_body(struct frames *frames, const struct robo
 }
 
 const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *link,
-                                  const struct robot_body_options *options,
+                                  const struct fmb_robot_options *options,
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin)
 {

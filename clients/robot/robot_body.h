@@ -5,35 +5,28 @@
 #ifndef ROBOT_BODY_H
 #define ROBOT_BODY_H
 
+#include "fmb_robot.h"
 #include "robot.h"
-
-struct robot_body_options {
-    int sides;                /* of the hulls of cylinders: a multiple of 4 (enclosure.h) */
-    bool objects;             /* of an OBJ: a hull for each */
-    const char *package_path; /* folders of packages, separated by colons; NULL: none */
-    double excess;            /* how far hulls may extend beyond meshes, for fewer vertices */
-    size_t bytes_max;         /* of a body in a message; 0: any number */
-};
 
 /* What was done to the meshes of a robot. All 0: nothing. */
 struct robot_meshes {
     size_t scaled;          /* number of COLLADA meshes whose unit is not 1 m */
     const char *first_file; /* the first of these, and its unit in metres */
     double first_unit;
-    size_t rounded; /* number of hulls that have a radius in place of vertices */
-    double excess;  /* the largest of these radii */
+    double excess; /* the largest radius of a hull */
 };
 
 /* Makes the body of a link that has at least one collision element. If it has only one, the origin
  * of the body is that of the element, and its numbers are those of the file. If it has several, the
  * origin is that of the link, and the numbers of elements with an origin are rounded.
  *
+ * In:     options  valid; sides is not 0
  * In/out: scene    of dim 3; owns the body; its `outside` is raised
  *         meshes   of the robot so far
  * Out:    *origin  of the body, in the link
  * Returns NULL after errors, which the robot has. */
 const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *link,
-                                  const struct robot_body_options *options,
+                                  const struct fmb_robot_options *options,
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin);
 

@@ -110,35 +110,30 @@ static bool add_bodies(struct fmb_robot_scene *scene, const struct fmb_robot_wor
 
 struct taken_id {
     int64_t id;
-    size_t index;
+    bool again; /* an earlier body has it */
+    UT_hash_handle hh;
 };
 
-static int by_id(const void *x, const void *y)
-{
-    const struct taken_id *a = x, *b = y;
-    return a->id != b->id ? (a->id > b->id) - (a->id < b->id)
-                          : (a->index > b->index) - (a->index < b->index);
-}
-
-/* Gives new ids, above all others, to bodies with the id of a link or of an earlier body. */
+/* Gives new ids, above all others, to bodies whose ids links or earlier bodies have. */
 static bool set_ids(struct fmb_robot_scene *scene)
 {
     const size_t count = scene->owner.scene.placement_count;
-    struct taken_id *taken = allocate(count, sizeof *taken);
-    bool *again = allocate(count, sizeof *again);
+    struct taken_id *taken = allocate(count, sizeof *taken), *table = NULL, *found;
     size_t changed = 0;
+    int64_t most = 0;
+    for (size_t i = 0; i < count; i++) {
+        const int64_t id = taken[i].id = scene->placements[i].id;
+        most = id > most ? id : most;
+        HASH_FIND(hh, table, &taken[i].id, sizeof id, found);
+        taken[i].again = found && id != 0;
+        if (!found)
+            HASH_ADD(hh, table, id, sizeof id, &taken[i]);
+    }
+    HASH_CLEAR(hh, table);
     for (size_t i = 0; i < count; i++)
-        taken[i] = (struct taken_id){scene->placements[i].id, i};
-    if (count > 0)
-        qsort(taken, count, sizeof *taken, by_id);
-    for (size_t k = 1; k < count; k++)
-        again[taken[k].index] = taken[k].id != 0 && taken[k].id == taken[k - 1].id;
-    const int64_t most = count > 0 ? taken[count - 1].id : 0;
-    for (size_t i = 0; i < count; i++)
-        if (again[i])
+        if (taken[i].again)
             scene->placements[i].id = most + (int64_t) ++changed;
     free(taken);
-    free(again);
     if (changed == 0)
         return true;
     const bool good = most + (int64_t) changed <= QUERY_ID_MAX;

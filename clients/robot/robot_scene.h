@@ -36,7 +36,7 @@ bool robot_pairs_has(const struct robot_pairs *pairs, unsigned a, unsigned b); /
 
 struct fmb_robot {
     struct robot tree;
-    struct robot_body_options options;
+    struct fmb_robot_options options;
     struct robot_meshes meshes;
     struct pose base; /* of the root */
     double base_rpy[3];

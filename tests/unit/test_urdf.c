@@ -183,7 +183,7 @@ static void check_enclosure(int sides, double radius, double length, const doubl
     struct robot robot;
     struct pose pose, placed = POSE_IDENTITY;
     struct owned_scene scene = {.dim = 3};
-    const struct robot_body_options options = {.sides = sides};
+    const struct fmb_robot_options options = {.sides = sides};
     snprintf(text, sizeof text,
              "<robot><link name='a'><collision><origin xyz='%.17g %.17g %.17g' rpy='%.17g %.17g "
              "%.17g'/><geometry><cylinder radius='%.17g' length='%.17g'/></geometry></collision>"
