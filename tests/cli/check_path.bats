@@ -9,8 +9,8 @@ setup() {
 }
 
 # -S: without the folders that packages are in.
-@test "proofs of robots whose clearance is known, and each fault in a file" {
-    $python -S tests/python/test_check_path.py -v
+@test "proofs of robots whose clearance is known, those of fmb path, and each fault in a file" {
+    FMB=$FMB_BUILD/fmb $python -S tests/python/test_check_path.py -v
 }
 
 # wrong TEST OLD NEW: the test fails of a program in which a text, which is there once, is replaced.

@@ -623,6 +623,133 @@ class Random(unittest.TestCase):
         self.assertIn("more than 300 joints", done.stderr)
 
 
+# ---- Proofs of fmb path ----
+
+def decimal(text):
+    return " ".join(repr(x) for x in numbers(text))
+
+
+def element(frame, line):
+    at = f'<origin xyz="{decimal(line)}"/>' if line else ""
+    if "radius" in frame:
+        return f'<collision>{at}<geometry><sphere radius="{decimal(frame["radius"])}"/></geometry></collision>'
+    size = " ".join(repr(numbers(side)[i]) for i, side in enumerate(frame["cuboid"][1:]))
+    return f'<collision>{at}<geometry><box size="{size}"/></geometry></collision>'
+
+
+def write_urdf(folder, lines):
+    """A robot of URDF, a world of JSON and a table. Some links get a second element, and one carries a box."""
+    links, rows = lines[1]["links"], [line["row"] for line in lines if "row" in line]
+    text, bodies = '<robot name="random">', []
+    for k, link in enumerate(links):
+        text += f'<link name="{link}">'
+        for line in lines:
+            if line.get("link") == k:
+                text += element(line["frames"][0], line["frames"][0]["hull"][0])
+                if k % 3 == 2:
+                    text += element(box("", 0, (0, 0, 0), (0.05, 0.1, 0.025))["frames"][0], "0x1p-4 0x0p+0 0x1p-5")
+        text += "</link>"
+    columns = {}
+    tree = [line for line in lines if "joint" in line]
+    for line in tree:
+        text += f'<joint name="{line["joint"]}" type="{line["type"]}"><parent link="{links[line["parent"]]}"/>'
+        text += f'<child link="{links[line["child"]]}"/><origin xyz="{decimal(line["xyz"])}" rpy="{decimal(line["rpy"])}"/>'
+        if "axis" in line:
+            text += f'<axis xyz="{decimal(line["axis"])}"/><limit lower="-100" upper="100" effort="1" velocity="1"/>'
+        if "mimic" in line:
+            target, factor, offset = line["mimic"]
+            text += f'<mimic joint="{tree[target]["joint"]}" multiplier="{decimal(factor)}" offset="{decimal(offset)}"/>'
+        if "column" in line:
+            columns[line["column"]] = line["joint"]
+        text += "</joint>"
+    far = next(line for line in lines if line.get("link") == -1)["frames"][0]
+    bodies.append({"id": 100, "name": "far", "shape": "sphere", "radius": numbers(far["radius"])[0],
+                   "position": numbers(far["hull"][0])})
+    bodies.append({"id": 101, "name": "tool", "shape": "box", "size": [0.1, 0.05, 0.025], "link": links[-1],
+                   "position": [0, 0.1, 0], "orientation": [3, 1, 2, 0.5]})
+    bodies.append({"id": 102, "name": "post", "shape": "box", "size": [0.25, 0.125, 1], "position": [1, 1, 0],
+                   "orientation": [1, 0.25, 0, 0.5]})
+    for name, text in (("robot.urdf", text + "</robot>"), ("world.json", json.dumps({"dim": 3, "bodies": bodies})),
+                       ("path.csv", "\n".join([",".join(columns[k] for k in sorted(columns))] +
+                                              [",".join(repr(x) for x in numbers(row)) for row in rows]) + "\n")):
+        with open(os.path.join(folder, name), "w") as file:
+            file.write(text)
+
+
+def fmb_path(folder, *options):
+    """The proof that fmb writes, and its lines of JSON, of which the last one is the path's."""
+    names = [os.path.join(folder, name) for name in ("robot.urdf", "path.csv", "world.json", "proof")]
+    done = subprocess.run([FMB, "path", names[0], "--joints-csv", names[1], "--with", names[2], "--proof", names[3], "--force",
+                           "--base", "0.5,-0.25,1,0.125,-2,3", "--json", *options], capture_output=True, text=True)
+    if done.returncode == 2:
+        raise AssertionError(done.stderr)
+    with open(names[3], "rb") as file:
+        return file.read(), [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def lines_of(packed):
+    return [json.loads(line) for line in gzip.decompress(packed).splitlines()]
+
+
+FMB = os.environ.get("FMB")
+
+
+@unittest.skipUnless(FMB, "FMB is not set")
+class Together(unittest.TestCase):
+    def paths(self, count, *options):
+        """Proofs of random robots that prove something."""
+        while count:
+            folder = tempfile.mkdtemp(dir=FOLDER)
+            lines = random_tree()
+            k = next(k for k, line in enumerate(lines) if "row" in line)
+            rows = [numbers(line["row"]) for line in lines if "row" in line]
+            lines.insert(k, {"row": hexed(*(x + DRAW.uniform(-0.5, 0.5) for x in rows[0]))})
+            write_urdf(folder, lines)
+            packed, said = fmb_path(folder, *options)
+            if any(edge["verdict"] in ("free", "near") for edge in said[:-1]):
+                count -= 1
+                yield packed, said
+
+    def test_proofs_of_random_robots_hold(self):
+        kinds = set()
+        for options in ((), ("--clearance", "0.01"), ("--clearance", "0.25")):
+            for packed, said in self.paths(SAMPLES // 20, *options):
+                done = run(packed, "--verbose")
+                edges = [edge["verdict"] in ("free", "near") for edge in said[:-1]]
+                self.assertEqual((done.returncode, done.stderr), (0 if all(edges) else 3, ""), lines_of(packed))
+                found = [line for line in lines_of(packed) if "edge" in line]
+                for edge, line in zip(said[:-1], found):
+                    if edge["verdict"] in ("free", "near"):
+                        claimed = numbers(line["clearance"])[0]
+                        self.assertLessEqual(claimed, edge["clearance"])
+                        self.assertLess(edge["clearance"] * (1 - 2**-15), claimed)
+                kinds |= {item[0] for line in lines_of(packed) for item in line.get("proof", [])}
+        self.assertLessEqual({"S", "L", "A", "B"}, kinds)
+
+    def test_faults_in_them_are_found(self):
+        for packed, said in self.paths(SAMPLES // 10):
+            lines = lines_of(packed)
+            def refused(lines, code=1):
+                done = run(lines)
+                self.assertEqual(done.returncode, code, (done.stdout, lines))
+            for k, line in enumerate(lines):
+                if "edge" in line and numbers(line["clearance"])[0]:
+                    # Found to a tenth: a third more exceeds what a pose has.
+                    refused(lines[:k] + [line | {"clearance": hexed(numbers(line["clearance"])[0] * 4 / 3)}] + lines[k + 1:])
+            for k in DRAW.sample(pairs := [k for k, line in enumerate(lines) if "proof" in line], min(3, len(pairs))):
+                changed, intervals = copy.deepcopy(lines), lines[k]["proof"]
+                i = DRAW.randrange(len(intervals))
+                del changed[k]["proof"][i]
+                refused(changed)
+                refused(lines[:k] + lines[k + 1:-1] + [{"end": len(lines) - 2}])
+                kind, depth, *n = intervals[i]
+                if n:
+                    changed = copy.deepcopy(lines)
+                    changed[k]["proof"][i] = [kind, depth, *(-x for x in n[:3]), *n[3:]]
+                    refused(changed)
+            refused(packed[:len(packed) // 2], 2)
+
+
 SEED = int(os.environ.get("FMB_SEED") or 1)
 SAMPLES = int(200 * float(os.environ.get("FMB_SAMPLE") or 1))
 DRAW = random.Random(SEED)
