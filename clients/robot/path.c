@@ -239,7 +239,7 @@ static void enter_pairs(struct fmb_robot_path *path)
                 const struct path_part *b = &path->parts[path->partner[i]];
                 const double x = b->middle[0] - a->middle[0], y = b->middle[1] - a->middle[1],
                              z = b->middle[2] - a->middle[2];
-                bound = sqrt(x * x + y * y + z * z) * (1 - 0x1p-36) - a->ball - b->ball - half -
+                bound = sqrt(x * x + y * y + z * z) / PATH_OUTWARD - a->ball - b->ball - half -
                         a->slack - b->slack;
                 if (pass == 0 && bound < least) {
                     least = bound;

@@ -15,6 +15,9 @@
 
 #include <stdint.h>
 
+/* Factor of bounds: their own arithmetic, sums of up to 2^14 terms, rounds by less. */
+#define PATH_OUTWARD (1 + 0x1p-36)
+
 struct path_part {
     unsigned placement, frame, node;
     struct fmb_body body; /* hull of the vertices in the node, with the radius of the frame */
@@ -167,6 +170,7 @@ double path_slack(const struct fmb_robot_path *path, unsigned a, unsigned b);
 double path_prove(struct fmb_robot_path *path, const struct path_bounds *bounds,
                   const struct path_direction *direction, double low, int level);
 
+double path_length(const double v[3]);
 void path_turn(const double r[3][3], const double v[3], double out[3]);      /* r v */
 void path_turn_back(const double r[3][3], const double v[3], double out[3]); /* r transposed, v */
 

@@ -21,10 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Factor of bounds: their own arithmetic, sums of up to 2^14 terms, rounds by less. */
-#define OUTWARD (1 + 0x1p-36)
-
-static double length(const double v[3])
+double path_length(const double v[3])
 {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
@@ -32,7 +29,7 @@ static double length(const double v[3])
 static double distance(const double a[3], const double b[3])
 {
     const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    return length(d);
+    return path_length(d);
 }
 
 static double dot(const double a[3], const double b[3])
@@ -71,7 +68,7 @@ void path_turn_back(const double r[3][3], const double v[3], double out[3])
 
 static void bound_root(struct fmb_robot_path *path, double *turn, unsigned link)
 {
-    path->far[link] = length(path->scene->robot->base.p) * OUTWARD;
+    path->far[link] = path_length(path->scene->robot->base.p) * PATH_OUTWARD;
     path->error[link] = 0;
     turn[link] = TURN_STEP;
 }
@@ -92,14 +89,14 @@ static bool bound_poses(struct fmb_robot_path *path)
         const unsigned up = joint->link[0];
         const double most = fmax(fabs(path->value[0][j]), fabs(path->value[1][j]));
         const bool fixed = joint->type == ROBOT_FIXED, slides = joint->type == ROBOT_PRISMATIC;
-        const double value = fixed ? 0 : VALUE_ERROR * most, way = slides ? most * OUTWARD : 0;
-        const double step = (length(joint->origin.p) + way) * OUTWARD;
+        const double value = fixed ? 0 : VALUE_ERROR * most, way = slides ? most * PATH_OUTWARD : 0;
+        const double step = (path_length(joint->origin.p) + way) * PATH_OUTWARD;
         turn[link] = turn[up] + TURN_STEP + (slides ? 0 : value);
-        path->far[link] = (path->far[up] + step) * OUTWARD;
+        path->far[link] = (path->far[up] + step) * PATH_OUTWARD;
         path->error[link] =
             (path->error[up] + turn[up] * step + TURN_STEP * way + (slides ? 2 * value : 0) +
              3 * POSE_ERROR * (path->far[up] + 2 * step)) *
-            OUTWARD;
+            PATH_OUTWARD;
         path->turn_error = fmax(path->turn_error, turn[link]);
         path->round = fmax(path->round, path->error[link]);
     }
@@ -123,7 +120,7 @@ static void bound_parts(struct fmb_robot_path *path)
 {
     for (size_t i = 0; i < path->part_count; i++) {
         struct path_part *part = &path->parts[i];
-        part->slack = 2 * OUTWARD *
+        part->slack = 2 * PATH_OUTWARD *
                       (path->error[part->node] + part->error + 0x1p-900 +
                        (4 * path->turn_error + 0x1p-43) * (path->far[part->node] + part->reach));
     }
@@ -187,7 +184,7 @@ static double radius_about(struct fmb_robot_path *path, unsigned part, unsigned 
         path_centre(poses, of, centre);
         most = fmax(most, distance(centre, poses[link].p));
     }
-    return (most + of->ball + path_slack(path, part, part) + path->round) * OUTWARD;
+    return (most + of->ball + path_slack(path, part, part) + path->round) * PATH_OUTWARD;
 }
 
 static void begin_chain(struct fmb_robot_path *path, struct path_chain *chain)
@@ -197,7 +194,7 @@ static void begin_chain(struct fmb_robot_path *path, struct path_chain *chain)
     chain->turns = 0;
     for (unsigned i = 0; i < chain->joint_count; i++) {
         const unsigned j = chain->joint[i], link = tree->joints[j].link[1];
-        const double rate = fabs(path->value[1][j] - path->value[0][j]) * OUTWARD;
+        const double rate = fabs(path->value[1][j] - path->value[0][j]) * PATH_OUTWARD;
         struct path_joint *out = &chain->joints[chain->active];
         if (rate == 0)
             continue;
@@ -208,7 +205,7 @@ static void begin_chain(struct fmb_robot_path *path, struct path_chain *chain)
                 const struct path_pose *poses = path_poses(path, end);
                 most = fmax(most, distance(poses[out[-1].link].p, poses[link].p));
             }
-            out->along = (out[-1].along + most + path->round) * OUTWARD;
+            out->along = (out[-1].along + most + path->round) * PATH_OUTWARD;
         }
         chain->turns += out->turns ? rate : 0;
         chain->active++;
@@ -231,7 +228,7 @@ static double lever_of(const struct fmb_robot_path *path, const struct path_fami
                                              : path->far[b] - from + family->reach;
         sum += joint->type == ROBOT_PRISMATIC ? 1 : way;
     }
-    return sum * OUTWARD;
+    return sum * PATH_OUTWARD;
 }
 
 bool path_edge_begin(struct fmb_robot_path *path)
@@ -261,7 +258,7 @@ double path_family_speed(struct fmb_robot_path *path, const struct path_family *
         const struct path_joint *joint = &chain->joints[j];
         sum += joint->rate * (joint->turns ? radius + joint->along : 1);
     }
-    return sum * OUTWARD;
+    return sum * PATH_OUTWARD;
 }
 
 /* Speed: that of a distance |y - x| by joint j is the part of z_j x (y - o_j), or of z_j x (x -
@@ -294,9 +291,9 @@ void path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain,
     }
     const double s = chain->turns;
     out->curve[2] = fmin(2 * s * speed[0] + out->curve[0], 2 * s * speed[1] + out->curve[1]);
-    out->speed *= OUTWARD;
+    out->speed *= PATH_OUTWARD;
     for (int i = 0; i < 3; i++)
-        out->curve[i] *= OUTWARD;
+        out->curve[i] *= PATH_OUTWARD;
 }
 
 /* ---- What a direction proves ---- */
@@ -336,7 +333,7 @@ static double value_at(struct fmb_robot_path *path, const struct path_bounds *bo
     path_turn_back(of[1]->r, n, f);
     for (int i = 0; i < 3; i++)
         f[i] = -f[i];
-    *size = length(n);
+    *size = path_length(n);
     return dot(n, way) - support(a, e) - support(b, f);
 }
 
@@ -356,23 +353,23 @@ double path_prove(struct fmb_robot_path *path, const struct path_bounds *bounds,
     double centre[2][3], size, proven = INFINITY;
     if (direction->kind == PATH_MIDDLE) {
         const double f = value_at(path, bounds, direction, middle, &size) - bounds->slack;
-        return f > 0 ? f / (size * OUTWARD) - rounded - bounds->speed * w / 2 : -INFINITY;
+        return f > 0 ? f / (size * PATH_OUTWARD) - rounded - bounds->speed * w / 2 : -INFINITY;
     }
     path_centre(poses, a, centre[0]);
     path_centre(poses, b, centre[1]);
     const double apart = distance(centre[0], centre[1]);
     if (direction->kind == PATH_SPHERES)
-        return apart / OUTWARD - a->ball - b->ball - bounds->speed * w / 2 - bounds->slack;
+        return apart / PATH_OUTWARD - a->ball - b->ball - bounds->speed * w / 2 - bounds->slack;
     double bend = bounds->curve[direction->kind == PATH_A ? 0 : direction->kind == PATH_B ? 1 : 2];
     if (direction->kind == PATH_E)
-        bend +=
-            s * s * (apart + a->ball + b->ball + bounds->speed * w / 2 + bounds->slack) * OUTWARD;
-    bend *= w * w / 8 * OUTWARD;
+        bend += s * s * (apart + a->ball + b->ball + bounds->speed * w / 2 + bounds->slack) *
+                PATH_OUTWARD;
+    bend *= w * w / 8 * PATH_OUTWARD;
     for (int end = 0; end < 2; end++) {
         const double f = value_at(path, bounds, direction, low + end * w, &size) - bounds->slack;
-        const double scale = direction->kind == PATH_E ? (size + s * s * w * w / 8) * OUTWARD +
+        const double scale = direction->kind == PATH_E ? (size + s * s * w * w / 8) * PATH_OUTWARD +
                                                              4 * path->turn_error + 0x1p-40
-                                                       : size * OUTWARD;
+                                                       : size * PATH_OUTWARD;
         const double left = f - (direction->kind == PATH_E ? bend : bend * scale);
         proven = fmin(proven, left > 0 ? left / scale : -INFINITY);
     }

@@ -38,14 +38,6 @@ static size_t list_vertices(const struct fmb_frame *frame, double (*out)[3])
     return vertices;
 }
 
-/* Factor of bounds: their own arithmetic, sums of up to 2^14 terms, rounds by less. */
-#define OUTWARD (1 + 0x1p-36)
-
-static double length(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Makes a part. The sphere has its centre in the middle of the box of the vertices in body
  * coordinates. */
 static bool make_part(struct fmb_robot_path *path, const struct fmb_frame *frame,
@@ -65,18 +57,18 @@ static bool make_part(struct fmb_robot_path *path, const struct fmb_frame *frame
     pose_apply(&out->origin, out->centre);
     double most = 0;
     for (size_t k = 0; k < count; k++) {
-        most = fmax(most, length(vertex[k]));
+        most = fmax(most, path_length(vertex[k]));
         pose_apply(&out->origin, vertex[k]);
         const double from[3] = {vertex[k][0] - out->centre[0], vertex[k][1] - out->centre[1],
                                 vertex[k][2] - out->centre[2]};
-        out->ball = fmax(out->ball, length(from));
-        out->reach = fmax(out->reach, length(vertex[k]));
+        out->ball = fmax(out->ball, path_length(from));
+        out->reach = fmax(out->reach, path_length(vertex[k]));
     }
-    out->ball = (out->ball + frame->radius) * OUTWARD + 0x1p-1000;
-    out->reach = (out->reach + frame->radius) * OUTWARD + 0x1p-1000;
+    out->ball = (out->ball + frame->radius) * PATH_OUTWARD + 0x1p-1000;
+    out->reach = (out->reach + frame->radius) * PATH_OUTWARD + 0x1p-1000;
     /* Sums and pose_apply(): less than 2^-46 of both lengths. An origin of roll, pitch and yaw is
      * turned too far by less than 2^-45 (path_edge.c). */
-    out->error = 0x1p-44 * (most + length(out->origin.p)) * OUTWARD;
+    out->error = 0x1p-44 * (most + path_length(out->origin.p)) * PATH_OUTWARD;
     double *memory = scene_alloc(&path->owner, fmb_hull_doubles(3, count), sizeof *memory);
     return fmb_body_make_hull(3, vertex[0], 3 * count, memory, &out->body) == FMB_OK &&
            fmb_body_inflate(&out->body, frame->radius) == FMB_OK;
