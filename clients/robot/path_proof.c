@@ -294,7 +294,7 @@ void path_proof_edge(struct path_proof *proof, struct fmb_robot_path *path, size
         to = clearance > 0 ? to : 0;
     }
     /* Less than is proven, by more than what the errors of doubles and those of the checker are. */
-    const double given = fmin(clearance, 0x1p100) * (1 - 0x1p-16);
+    const double given = fmin(clearance, 0x1p30) * (1 - 0x1p-16);
     struct path_leaf *leaves = path->leaves;
     struct path_bounds bounds;
     struct line line;

@@ -256,6 +256,10 @@ refused() {
     ended 0
     planted 0.5 speed towards.csv world.json --clearance 0.38
     ended 1
+    # Without any pair.
+    echo '{"dim": 3, "bodies": []}' > none.json
+    planted 1 speed beside.csv none.json
+    ended 0
     # And those of a robot with all kinds of intervals.
     cd "$DEMO" || return
     run "$FMB" path robot.urdf --joints-csv path.csv --with world.json --clearance 0 --proof "$BATS_TEST_TMPDIR/demo"
