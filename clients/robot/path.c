@@ -134,8 +134,10 @@ static unsigned count_supports(const struct path_part *part, const double n[3], 
     const double *x = hull->vertices, *y = x + hull->vertex_stride, *z = y + hull->vertex_stride;
     double most = -INFINITY;
     unsigned count = 0;
-    for (unsigned i = 0; i < hull->vertex_count; i++)
-        most = fmax(most, n[0] * x[i] + n[1] * y[i] + n[2] * z[i]);
+    for (unsigned i = 0; i < hull->vertex_count; i++) {
+        const double d = n[0] * x[i] + n[1] * y[i] + n[2] * z[i];
+        most = d > most ? d : most;
+    }
     most -= 1e-9 * part->ball;
     for (unsigned i = 0; i < hull->vertex_count; i++)
         if (n[0] * x[i] + n[1] * y[i] + n[2] * z[i] >= most) {

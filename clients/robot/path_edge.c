@@ -298,17 +298,21 @@ void path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain,
 
 /* ---- What a direction proves ---- */
 
-/* The greatest n . v over the vertices of a part. */
+/* The greatest n . v over the vertices of a part. The padding, up to a multiple of four, repeats a
+ * vertex. */
 static double support(const struct path_part *part, const double n[3])
 {
     const struct fmb_frame *hull = &part->body.one;
     const double *x = hull->vertices, *y = x + hull->vertex_stride, *z = y + hull->vertex_stride;
-    double most = -INFINITY;
-    for (unsigned i = 0; i < hull->vertex_count; i++) {
-        const double d = n[0] * x[i] + n[1] * y[i] + n[2] * z[i];
-        most = d > most ? d : most;
-    }
-    return most;
+    double most[4] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    for (unsigned i = 0; i < hull->vertex_stride; i += 4)
+        for (unsigned k = 0; k < 4; k++) {
+            const double d = n[0] * x[i + k] + n[1] * y[i + k] + n[2] * z[i + k];
+            most[k] = d > most[k] ? d : most[k];
+        }
+    const double low = most[0] > most[1] ? most[0] : most[1];
+    const double high = most[2] > most[3] ? most[2] : most[3];
+    return low > high ? low : high;
 }
 
 /* The least n . (y - x) of the cores at a time, n from a to b; *size is the length of n. */

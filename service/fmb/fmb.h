@@ -154,8 +154,8 @@ struct fmb_frame {
     double remainder[FMB_DIM_MAX][FMB_DIM_MAX];
     double centre[FMB_DIM_MAX]; /* of a box; otherwise 0 */
     /* Of a hull, otherwise 0 and NULL: its distinct vertices in the order given, x of all, then y,
-     * then z, each padded to vertex_stride numbers. In the memory given to fmb_frame_make_hull().
-     */
+     * then z, each padded with the first one to vertex_stride numbers, a multiple of 8. In the
+     * memory given to fmb_frame_make_hull(). */
     unsigned vertex_count, vertex_stride;
     const double *vertices;
     /* Internal (prepared.h). */
