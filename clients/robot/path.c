@@ -224,41 +224,60 @@ static void enter_pair(struct fmb_robot_path *path, const struct path_family *fa
     path->live_count++;
 }
 
+/* Returns a lower bound of the gap over the edge, from the spheres in its middle. half: of the way
+ * that they move. */
+static double bound_by_spheres(const struct path_part *a, const struct path_part *b, double half)
+{
+    const double x = b->middle[0] - a->middle[0], y = b->middle[1] - a->middle[1],
+                 z = b->middle[2] - a->middle[2];
+    return sqrt(x * x + y * y + z * z) / PATH_OUTWARD - a->ball - b->ball - half - a->slack -
+           b->slack;
+}
+
+/* Measures the gap of the pair whose spheres are nearest, so that there is a target. */
+static void measure_nearest(struct fmb_robot_path *path)
+{
+    const struct path_family *nearest = NULL;
+    struct path_bounds bounds;
+    struct fmb_gap gap;
+    unsigned partner = 0;
+    double least = INFINITY;
+    for (size_t k = 0; k < path->family_count; k++) {
+        const struct path_family *family = &path->families[k];
+        const double half = path_family_speed(path, family) / 2;
+        for (size_t i = family->first; i < family->first + family->count; i++) {
+            const double bound =
+                bound_by_spheres(&path->parts[family->a], &path->parts[path->partner[i]], half);
+            if (bound < least) {
+                least = bound;
+                nearest = family;
+                partner = path->partner[i];
+            }
+        }
+    }
+    if (nearest) {
+        path_bounds_of(path, &nearest->chain, nearest->a, partner, &bounds);
+        measure(path, &bounds, 0.5, &gap);
+    }
+}
+
 /* Enters all pairs that their spheres do not prove. */
 static void enter_pairs(struct fmb_robot_path *path)
 {
     const struct path_direction spheres = {.kind = PATH_SPHERES};
     path->live_count = path->heap_count = path->leaf_count = path->work = 0;
     path->proven = INFINITY;
-    double least = INFINITY, bound = -INFINITY;
-    for (int pass = path->phase == LEAST && path->until == 1 ? 0 : 1; pass < 2; pass++) {
-        struct path_bounds nearest;
-        for (size_t k = 0; k < path->family_count; k++) {
-            const struct path_family *family = &path->families[k];
-            const struct path_part *a = &path->parts[family->a];
-            const double half = path_family_speed(path, family) / 2;
-            for (size_t i = family->first; i < family->first + family->count; i++) {
-                const struct path_part *b = &path->parts[path->partner[i]];
-                const double x = b->middle[0] - a->middle[0], y = b->middle[1] - a->middle[1],
-                             z = b->middle[2] - a->middle[2];
-                bound = sqrt(x * x + y * y + z * z) / PATH_OUTWARD - a->ball - b->ball - half -
-                        a->slack - b->slack;
-                if (pass == 0 && bound < least) {
-                    least = bound;
-                    path_bounds_of(path, &family->chain, family->a, path->partner[i], &nearest);
-                }
-                if (pass == 0)
-                    continue;
-                if (bound > 0 && bound >= target(path) && path->until == 1) {
-                    prove(path, family->a, path->partner[i], 0, 0, bound, &spheres);
-                    continue;
-                }
-                enter_pair(path, family, path->partner[i], bound);
-            }
+    for (size_t k = 0; k < path->family_count; k++) {
+        const struct path_family *family = &path->families[k];
+        const double half = path_family_speed(path, family) / 2;
+        for (size_t i = family->first; i < family->first + family->count; i++) {
+            const unsigned b = path->partner[i];
+            const double bound = bound_by_spheres(&path->parts[family->a], &path->parts[b], half);
+            if (bound > 0 && bound >= target(path) && path->until == 1)
+                prove(path, family->a, b, 0, 0, bound, &spheres);
+            else
+                enter_pair(path, family, b, bound);
         }
-        struct fmb_gap gap;
-        if (pass == 0 && least < INFINITY)
-            measure(path, &nearest, 0.5, &gap);
     }
 }
 
@@ -396,6 +415,8 @@ static void begin(struct fmb_robot_path *path, double until)
     path->closest = path->hit = INFINITY;
     path->until = until;
     path->phase = LEAST;
+    if (until == 1)
+        measure_nearest(path);
     enter_pairs(path);
 }
 
