@@ -245,6 +245,10 @@ proven: on all 1 edges all 3 pairs are at least 0.03125 apart
         self.assertIn("not proven: edge 1\nnot proven: edge 2 after 0.5 of it\n", done.stdout)
         self.assertEqual(run(proof(lines, 0.1, to=0)).returncode, 3)
 
+    def test_a_path_without_pairs_may_claim_any_clearance(self):
+        lines = question(2, [joint("revolute", 0, 1, column=0)], [ball("hand", 1, (1, 0, 0))], [(0,), (1,)])
+        self.assertEqual(run(proof(lines, 2.0**100)).returncode, 0)
+
     def test_one_row_is_a_pose(self):
         lines, clearance = swing()
         lines = [line for line in lines if "row" not in line]
