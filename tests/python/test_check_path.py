@@ -737,7 +737,7 @@ class Together(unittest.TestCase):
                 done = run(lines)
                 self.assertEqual(done.returncode, code, (done.stdout, lines))
             for k, line in enumerate(lines):
-                if "edge" in line and numbers(line["clearance"])[0]:
+                if "edge" in line and numbers(line["to"]) == [1]:
                     # Found to a tenth: a third more exceeds what a pose has.
                     refused(lines[:k] + [line | {"clearance": hexed(numbers(line["clearance"])[0] * 4 / 3)}] + lines[k + 1:])
             for k in DRAW.sample(pairs := [k for k, line in enumerate(lines) if "proof" in line], min(3, len(pairs))):
