@@ -223,7 +223,7 @@ unsigned certified_box(const struct fmb_prepared *a, const struct fmb_prepared *
     struct kernel_one one;
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
-    if (kind >= KERNEL_KINDS || !want)
+    if (kind >= KERNEL_KINDS)
         return want;
     kernel_set_one(swapped ? b : a, swapped ? a : b, duration, &one);
     one.call.points = want & FMB_WANT_POINT ? one.point : NULL;
@@ -300,9 +300,11 @@ static bool begin_gap_and_point(const struct fmb_prepared *a, const struct fmb_p
         if (outcome != GAP_UNSURE)
             want &= ~(unsigned) FMB_WANT_GAP;
     }
+    if (!want)
+        return true;
     const struct frame_pair pair = pair_of(a, b, duration);
-    return !want || support_decision_begin_gap_and_point(&pair, want, answer->verdict, farthest,
-                                                         bounded, program, answer);
+    return support_decision_begin_gap_and_point(&pair, want, answer->verdict, farthest, bounded,
+                                                program, answer);
 }
 
 /* Sets what is wanted besides the verdict, which is known. Ends that the programs gave are used
@@ -322,7 +324,7 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
         else
             missing |= FMB_WANT_TIMES;
     }
-    if (meets)
+    if (meets && certified->want & (FMB_WANT_BOX | FMB_WANT_POINT))
         left |= certified_box(a, b, certified->duration,
                               certified->want & (FMB_WANT_BOX | FMB_WANT_POINT), answer);
     if (left & FMB_WANT_BOX && !certified_box_unsure(a, b, certified->duration, answer->box)) {
