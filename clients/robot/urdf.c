@@ -302,7 +302,8 @@ static void read_robot(struct robot *robot, const struct xml_element *root)
 
 bool robot_read(const char *path, struct robot *out)
 {
-    *out = (struct robot){.title = "", .path = strcmp(path, "-") == 0 ? "standard input" : path};
+    *out = (struct robot){.title = ""};
+    out->path = scene_text(&out->memory, strcmp(path, "-") == 0 ? "standard input" : path);
     const struct xml_element *root = urdf_open(out, path);
     if (root)
         read_robot(out, root);
