@@ -35,6 +35,10 @@ struct peers;
 
 /* The solids must outlive the peers. Unless all of them are in 3D, no library is opened. If one is
  * a hull or has a radius, only libraries that take such solids may be run. */
+struct peers *peers_open(const struct peer_solid *solid, size_t count);
+void peers_close(struct peers *peers);
+
+/* What a peer answers: a sum. PEER_VERDICT: it is raced for verdicts. */
 enum { PEER_VERDICT = 1, PEER_DISTANCE = 2, PEER_DEPTH = 4 };
 
 /* Which pairs it takes besides solids at rest in 3D: a sum. */

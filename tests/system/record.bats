@@ -451,11 +451,11 @@ hulls() {
     feed 3 | "$FMB" query - > /dev/null
     finish_record
     stop_fmbd
-    # The same messages once more, without a service and from the first query by handles on, which is
+    # The same messages once more, without a service and from the first query by handles on: these are
     # smaller than the first query of all, and its repetitions.
-    offset=$("$TOOLS/events" "$log" | awk '$3 == "FMB_SCENE_QUERY" && !whole { whole = $4 }
-        $3 == "FMB_SCENE_QUERY" && $4 < whole { found = 1 }
-        !found { offset += 28 + length($3) + $4 } END { print offset }')
+    offset=$("$TOOLS/events" "$log" | awk '{ size[NR] = 28 + length($3) + $4; query[NR] = $3 == "FMB_SCENE_QUERY" }
+        query[NR] && (!least || size[NR] < least) { least = size[NR] }
+        END { for (i = 1; !(query[i] && size[i] == least); i++) offset += size[i]; print offset + 0 }')
     tail -c +$((offset + 1)) "$log" > "$log.late"
     start_record "$log.2"
     lcm-logplayer "$log.late" 3>&-
