@@ -8,6 +8,8 @@
 
 #if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
 #define XML_GetCurrentLineNumber64 XML_GetCurrentLineNumber /* which later versions deprecate */
+#define XML_GetCurrentByteIndex64 XML_GetCurrentByteIndex
+#define XML_GetCurrentByteCount64 XML_GetCurrentByteCount
 #endif
 
 struct parse {
@@ -21,7 +23,7 @@ struct parse {
 
 static const unsigned char *position(const struct parse *parse)
 {
-    const XML_Index index = XML_GetCurrentByteIndex(parse->xml);
+    const int64_t index = XML_GetCurrentByteIndex64(parse->xml);
     return parse->bytes +
            (index >= 0 && (size_t) index < parse->size ? (size_t) index : parse->size);
 }
@@ -61,7 +63,7 @@ static void XMLCALL on_begin(void *user, const XML_Char *name, const XML_Char **
     }
     element->line = XML_GetCurrentLineNumber64(parse->xml);
     element->begin = position(parse);
-    element->text = element->text_end = element->begin + XML_GetCurrentByteCount(parse->xml);
+    element->text = element->text_end = element->begin + XML_GetCurrentByteCount64(parse->xml);
     element->parent = parent;
     if (parent && !parent->child)
         parent->text_end = element->begin;
