@@ -208,7 +208,7 @@ refused() {
     rows 0,0 1,1 3,1 4,1
     path --proof proof
     ended 3
-    [ "$(head -c 2 proof | xxd -p)" = 1f8b ]
+    [ "$(head -c 2 proof | od -An -tx1)" = " 1f 8b" ]
     gunzip < proof > lines
     jq -e -s '.[0] == {"fmb-path": 1} and .[-1] == {"end": (length - 1)}' lines
     run jq -c 'select(.row or .edge or .pair or .ignored) | [.row, .edge, .to, .pair, .pairs]' lines
