@@ -125,6 +125,7 @@ static void each_kind_replaces_its_own_kind(void **state)
     static const char *const text[] = {
         [OUTPUT_PAGE] = "<!DOCTYPE html>\n<html>",
         [OUTPUT_REPORT] = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites n",
+        [OUTPUT_PROOF] = "\x1f\x8b\x08",
         [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
     const struct output_rules rules = {.force = false}, force = {.force = true};
     for (int kind = OUTPUT_PAGE; kind <= OUTPUT_LOG; kind++)
