@@ -162,12 +162,10 @@ enum fmb_status fmb_certificate_begin(const struct fmb_placement *a, const struc
     support_pair_set(&begun->frames, &begun->pair);
     if (begun->pair.usable)
         verdict = support_search(&begun->pair, INFINITY, &nearest);
-    for (unsigned i = 0; i < nearest.simplex.count; i++)
-        first[i] = nearest.simplex.vertex[i].column;
-    begun->programs =
-        begun->pair.rounded
-            ? programs_begin_nearest(&begun->pair, false, first, nearest.simplex.count)
-            : programs_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, nearest.simplex.count);
+    const unsigned count = support_columns(&nearest.simplex, first);
+    begun->programs = begun->pair.rounded
+                          ? programs_begin_nearest(&begun->pair, false, first, count)
+                          : programs_begin(&begun->pair, FMB_WANT_CERTIFICATE, first, count);
     if (is_wide(&begun->frames, programs_proof(begun->programs)->integers) ||
         (verdict == FMB_SEPARATED &&
          write_separated(&begun->writer, &begun->pair, nearest.direction)))

@@ -111,12 +111,12 @@ static bool try_subset(struct integer_simplex *simplex, const int member[], int 
 }
 
 /* Tries the next subset of the corners; the last corner is in all of them. If the nearest point is
- * inside this subset, reduces the simplex to it. Returns whether it is. Corners that were given are
- * tried all together; if the nearest point is not inside, only the first is kept. */
+ * inside this subset, reduces the simplex to it. Returns whether it is. After the last subset,
+ * which fails only for corners that were given, the first corner alone is kept. */
 static bool reduce(struct integer_simplex *simplex)
 {
     const int last = simplex->count - 1;
-    const unsigned mask = simplex->guessed ? (1U << last) - 1 : simplex->subset++;
+    const unsigned mask = simplex->subset++;
     struct integer_corner *corner[INTEGER_CORNERS + 1];
     int member[INTEGER_CORNERS] = {last}, count = 1;
     assert(mask < 1U << last);
@@ -124,11 +124,12 @@ static bool reduce(struct integer_simplex *simplex)
         if (mask >> i & 1)
             member[count++] = i;
     if (!try_subset(simplex, member, count)) {
-        simplex->count = simplex->guessed ? 1 : simplex->count;
-        simplex->guessed = false;
+        if (simplex->subset == 1U << last) {
+            simplex->count = 1;
+            simplex->subset = 0;
+        }
         return false;
     }
-    simplex->guessed = false;
     memcpy(corner, simplex->corner, sizeof corner);
     simplex->count = count;
     for (int i = 0; i < count; i++)
@@ -147,7 +148,6 @@ void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
     support(context, toward, simplex->corner[0]);
     simplex->count = 1;
     simplex->subset = 0;
-    simplex->guessed = false;
 }
 
 void integer_simplex_begin_near(struct integer_simplex *simplex, int count)
@@ -155,8 +155,7 @@ void integer_simplex_begin_near(struct integer_simplex *simplex, int count)
     for (int i = 0; i <= INTEGER_CORNERS; i++)
         simplex->corner[i] = &simplex->pool[i];
     simplex->count = count;
-    simplex->subset = 0;
-    simplex->guessed = true;
+    simplex->subset = (1U << (count - 1)) - 1; /* all of them */
 }
 
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context)

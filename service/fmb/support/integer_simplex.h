@@ -10,22 +10,21 @@
 #ifndef FMB_INTEGER_SIMPLEX_H
 #define FMB_INTEGER_SIMPLEX_H
 
+#include "support_pair.h"
+
 #include <gmp.h>
-#include <stdbool.h>
 
 enum { INTEGER_CORNERS = 4 };
 
 /* A vertex of P. */
 struct integer_corner {
-    unsigned bits[2]; /* which one: defined by the caller */
-    bool late;        /* at the end of the window */
+    struct support_column column; /* which one */
     mpz_t at[3];
 };
 
 struct integer_simplex {
     int count;
     unsigned subset; /* bits: the subset of the corners to be tried next */
-    bool guessed;    /* the corners were given: the nearest point is expected inside all of them */
     bool zero;       /* the point is the origin */
     struct integer_corner pool[INTEGER_CORNERS + 1];
     struct integer_corner *corner[INTEGER_CORNERS + 1]; /* the first count: the simplex */

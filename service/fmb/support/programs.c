@@ -1097,8 +1097,7 @@ static void height_step(struct programs *e)
 static void set_corner(struct programs *e, struct support_column column, struct integer_corner *out)
 {
     mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
-    memcpy(out->bits, column.vertex, sizeof out->bits);
-    out->late = column.end;
+    out->column = column;
     for (int axis = 0; axis < 3; axis++) {
         mpz_sub(out->at[axis], b[axis], a[axis]);
         if (column.end)
@@ -1123,9 +1122,7 @@ static void prove_by_nearest(struct programs *e)
     proof->count = (unsigned) simplex->count;
     mpz_set(proof->total, simplex->total);
     for (int i = 0; i < simplex->count; i++) {
-        const struct integer_corner *corner = simplex->corner[i];
-        proof->column[i] =
-            (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
+        proof->column[i] = simplex->corner[i]->column;
         mpz_set(proof->weight[i], simplex->weight[i]);
     }
     for (int axis = 0; axis < 3; axis++) {
@@ -1146,7 +1143,7 @@ void programs_nearest_time(struct programs *e, double time[2])
     const struct dyadic window = dyadic_of(e->pair->frames->duration);
     mpz_set_ui(e->best, 0);
     for (int i = 0; i < e->simplex.count; i++)
-        if (e->simplex.corner[i]->late)
+        if (e->simplex.corner[i]->column.end)
             mpz_add(e->best, e->best, e->simplex.weight[i]);
     mpz_mul_si(e->best, e->best, window.mantissa);
     for (int end = 0; end < 2; end++)
@@ -1175,8 +1172,8 @@ void programs_nearest_point(struct programs *e, double point[1 + FMB_DIM_MAX])
         mpz_set_ui(e->best, 0);
         for (int i = 0; i < simplex->count; i++) {
             const struct integer_corner *corner = simplex->corner[i];
-            mpz_set(e->scratch[0], place(e, 0, corner->bits[0])[axis]);
-            if (corner->late)
+            mpz_set(e->scratch[0], place(e, 0, corner->column.vertex[0])[axis]);
+            if (corner->column.end)
                 mpz_add(e->scratch[0], e->scratch[0], e->integers.side[0].displacement[axis]);
             mpz_addmul(e->sum, simplex->weight[i], e->scratch[0]);
             mpz_addmul(e->best, simplex->weight[i], corner->at[axis]);

@@ -38,19 +38,11 @@ static void set_pair(const struct frame_pair *frames, unsigned want, double fart
     support_pair_set(&out->frames, &out->pair);
 }
 
-/* Copies the columns of the vertices of a simplex. Returns their number. */
-static unsigned columns_of(const struct support_simplex *simplex,
-                           struct support_column out[FMB_DIM_MAX + 1])
-{
-    for (unsigned i = 0; i < simplex->count; i++)
-        out[i] = simplex->vertex[i].column;
-    return simplex->count;
-}
-
 static struct programs *begin_nearest(const struct support_decision *decision)
 {
     struct support_column first[FMB_DIM_MAX + 1];
-    const unsigned count = decision->searched ? columns_of(&decision->nearest.simplex, first) : 0;
+    const unsigned count =
+        decision->searched ? support_columns(&decision->nearest.simplex, first) : 0;
     return programs_begin_nearest(&decision->pair, false, first, count);
 }
 
@@ -223,7 +215,7 @@ bool support_decision_begin(const struct frame_pair *frames, unsigned want,
         const bool guessed =
             answer->verdict == 0 && out->searched && support_guess_begin(pair, &guess);
         const struct support_simplex *simplex = guessed ? &guess.simplex : &nearest->simplex;
-        const unsigned count = columns_of(simplex, first);
+        const unsigned count = support_columns(simplex, first);
         out->programs = programs_begin(pair, left, first, count);
     }
     return false;

@@ -75,15 +75,29 @@ static void set_lower(const struct support_gap *gap, struct fmb_gap *out)
     out->bounds[0] = -(support_farthest(gap->pair, outward, &column) + 2 * gap->pair->error);
 }
 
+/* Whether the witness points are a deepest pair, within the limit of fmb.h. */
+static bool is_deepest(const struct support_gap *gap, const struct fmb_gap *out)
+{
+    return gap_stray(out) + support_witness_error(gap) <= gap->tight;
+}
+
+/* deepest: the witness points have to be a deepest pair. */
+static enum gap_outcome outcome_of(const struct support_gap *gap, bool deepest,
+                                   const struct fmb_gap *out)
+{
+    return is_tight(gap, out) && (!deepest || is_deepest(gap, out)) ? GAP_KNOWN : GAP_UNSURE;
+}
+
 static enum gap_outcome distance(const struct support_gap *gap,
-                                 const struct support_nearest *nearest, struct fmb_gap *out)
+                                 const struct support_nearest *nearest, bool deepest,
+                                 struct fmb_gap *out)
 {
     if (nearest->outcome != GAP_KNOWN)
         return nearest->outcome;
     memcpy(out->direction, nearest->direction, sizeof out->direction);
     out->bounds[0] = nearest->least - 4 * gap->pair->error;
     support_witness(gap, nearest, out);
-    return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
+    return outcome_of(gap, deepest, out);
 }
 
 /* ---- Distance on the grid ---- */
@@ -102,8 +116,7 @@ static void grid_support(void *context, mpz_t n[3], struct integer_corner *out)
     struct support_vertex vertex;
     integer_direction(n, direction);
     support_lowest(gap->pair, direction, &vertex);
-    memcpy(out->bits, vertex.column.vertex, sizeof out->bits);
-    out->late = vertex.column.end;
+    out->column = vertex.column;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         mpz_set_d(out->at[axis], (vertex.at[axis] - of->at[axis]) * gap->scale);
 }
@@ -132,9 +145,7 @@ static bool nearest_on_grid(const struct support_gap *gap, const double at[FMB_D
         ;
     out->simplex.count = (unsigned) simplex.count;
     for (int c = 0; c < simplex.count; c++) {
-        const struct integer_corner *corner = simplex.corner[c];
-        out->simplex.vertex[c].column =
-            (struct support_column){{corner->bits[0], corner->bits[1]}, corner->late};
+        out->simplex.vertex[c].column = simplex.corner[c]->column;
         out->weight[c] = mpz_get_d(simplex.weight[c]) / mpz_get_d(simplex.total);
     }
     const bool apart = !simplex.zero;
@@ -146,7 +157,8 @@ static bool nearest_on_grid(const struct support_gap *gap, const double at[FMB_D
 
 /* Finds the point of D nearest to the origin. If that is the origin, the depth gives the direction.
  */
-static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct fmb_gap *out)
+static enum gap_outcome distance_on_grid(const struct support_gap *gap, bool deepest,
+                                         struct fmb_gap *out)
 {
     const double origin[FMB_DIM_MAX] = {0};
     struct support_nearest nearest;
@@ -156,15 +168,19 @@ static enum gap_outcome distance_on_grid(const struct support_gap *gap, struct f
         set_direction(gap, out);
     set_lower(gap, out);
     support_witness(gap, &nearest, out);
-    return is_tight(gap, out) ? GAP_KNOWN : GAP_UNSURE;
+    return outcome_of(gap, deepest, out);
 }
 
 /* ---- Deepest pair ---- */
 
-/* Whether the witness points are a deepest pair, within the limit of fmb.h. */
-static bool is_deepest(const struct support_gap *gap, const struct fmb_gap *out)
+/* Sets the witness points that the weights give. Returns whether they are a deepest pair. */
+static bool take_deepest(const struct support_gap *gap, const struct support_nearest *nearest,
+                         struct fmb_gap *out)
 {
-    return gap_stray(out) + support_witness_error(gap) <= gap->tight;
+    const double upper = out->bounds[1];
+    support_witness(gap, nearest, out);
+    out->bounds[1] = upper;
+    return is_deepest(gap, out);
 }
 
 /* Sets the witness points of a pair that overlaps and does not drift, whose bounds and direction
@@ -174,22 +190,17 @@ static bool is_deepest(const struct support_gap *gap, const struct fmb_gap *out)
 static enum gap_outcome set_deepest(const struct support_gap *gap, bool bounded,
                                     struct fmb_gap *out)
 {
-    const double upper = out->bounds[1];
     struct support_nearest nearest;
     double at[FMB_DIM_MAX];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        at[axis] = upper * out->direction[axis];
+        at[axis] = out->bounds[1] * out->direction[axis];
     support_search_near(gap->pair, at, out->direction, &nearest);
-    support_witness(gap, &nearest, out);
-    out->bounds[1] = upper;
-    if (is_deepest(gap, out))
+    if (take_deepest(gap, &nearest, out))
         return GAP_KNOWN;
     if (bounded)
         return GAP_UNSURE;
     nearest_on_grid(gap, at, &nearest);
-    support_witness(gap, &nearest, out);
-    out->bounds[1] = upper;
-    return is_deepest(gap, out) ? GAP_KNOWN : GAP_UNSURE;
+    return take_deepest(gap, &nearest, out) ? GAP_KNOWN : GAP_UNSURE;
 }
 
 /* ---- Pairs ---- */
@@ -276,12 +287,12 @@ bool support_common_point(const struct support_pair *pair, const struct support_
         share = a / (a + 0.5 * pair->frames->b.frame->radius);
     } else {
         const double part = apart / support_simplex_depth(pair, &nearest->simplex);
+        if (!(part <= time_limit))
+            return false;
         const double spread[2] = {spread_of(&gap, &nearest->simplex, 0),
                                   spread_of(&gap, &nearest->simplex, 1)};
         share = spread[0] > spread[1];
         off = part * fmin(spread[0], spread[1]);
-        if (!(part <= time_limit))
-            return false;
     }
     if (!(off + support_witness_error(&gap) <= gap.tight))
         return false;
@@ -313,12 +324,8 @@ static enum gap_outcome solve_distance(const struct support_gap *gap,
                                        enum fmb_verdict verdict, bool bounded, struct fmb_gap *out)
 {
     const bool deepest = has_deepest(gap->pair, verdict);
-    enum gap_outcome outcome = distance(gap, nearest, out);
-    if (outcome == GAP_KNOWN && deepest && !is_deepest(gap, out))
-        outcome = GAP_UNSURE;
-    if (outcome == GAP_UNSURE && !bounded)
-        outcome = distance_on_grid(gap, out);
-    return outcome == GAP_KNOWN && deepest && !is_deepest(gap, out) ? GAP_UNSURE : outcome;
+    const enum gap_outcome outcome = distance(gap, nearest, deepest, out);
+    return outcome == GAP_UNSURE && !bounded ? distance_on_grid(gap, deepest, out) : outcome;
 }
 
 /* In: the verdicts of the cores and of the pair; bounded: as above. */

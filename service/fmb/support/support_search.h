@@ -16,6 +16,15 @@ struct support_simplex {
     struct support_vertex vertex[FMB_DIM_MAX + 1];
 };
 
+/* Copies the columns of the vertices. Returns how many there are. */
+static inline unsigned support_columns(const struct support_simplex *simplex,
+                                       struct support_column out[FMB_DIM_MAX + 1])
+{
+    for (unsigned i = 0; i < simplex->count; i++)
+        out[i] = simplex->vertex[i].column;
+    return simplex->count;
+}
+
 /* The result of a search for the point of D nearest to the origin. */
 struct support_nearest {
     enum gap_outcome outcome; /* GAP_KNOWN: the weights and the direction are of that point */
