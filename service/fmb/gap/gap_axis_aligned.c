@@ -40,7 +40,7 @@ enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, enum fmb_verdict 
 {
     double ends[2][2][FMB_DIM_MAX]; /* [frame] */
     struct interval best = {-INFINITY, -INFINITY};
-    int apart = 0, axis_of = 0, side_of = 0;
+    int apart = 0;
     if (pair->error != 0 || pair->drifts || pair->simplex[0] || pair->simplex[1] ||
         !set_ends(pair, 0, ends[0]) || !set_ends(pair, 1, ends[1]))
         return GAP_UNSURE;
@@ -51,15 +51,10 @@ enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, enum fmb_verdict 
             const double low = ends[!side][0][axis], high = ends[side][1][axis];
             const struct interval by = interval_sum(interval_of(low), interval_of(-high));
             best.high = interval_max(best.high, by.high);
-            if (by.high > 0) {
-                apart++;
-                out->witness[side][axis] = high + 0.0;
-            }
+            apart += by.high > 0;
             if (by.low <= best.low)
                 continue;
             best.low = by.low;
-            axis_of = axis;
-            side_of = side;
             memset(out->direction, 0, sizeof out->direction);
             out->direction[axis] = side ? -1 : 1;
         }
@@ -71,8 +66,10 @@ enum gap_outcome gap_axis_aligned(const struct gap_pair *pair, enum fmb_verdict 
     out->has_witness = verdict != FMB_TOUCHING;
     if (!out->has_witness)
         memset(out->witness, 0, sizeof out->witness);
-    else if (apart == 0)
-        for (int side = 0; side < 2; side++)
-            out->witness[side][axis_of] = ends[side][side == side_of][axis_of] + 0.0;
+    for (int axis = 0; axis < pair->dim && out->has_witness; axis++)
+        for (int side = 0; side < 2 && out->direction[axis] != 0; side++) {
+            const bool upper = side == (out->direction[axis] < 0);
+            out->witness[side][axis] = ends[side][upper][axis] + 0.0;
+        }
     return GAP_KNOWN;
 }
