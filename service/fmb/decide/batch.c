@@ -273,14 +273,10 @@ static void set_block(const struct batch_job *job, size_t first, struct batch_bl
 
 /* ---- Results ---- */
 
-static void put_no_box(const struct fmb_batch *batch, size_t i)
+static void put_no_box_or_point(const struct fmb_batch *batch, size_t i)
 {
     for (int k = 0; k < 2 * FMB_DIM_MAX && batch->boxes; k++)
         batch->boxes[i][k / FMB_DIM_MAX][k % FMB_DIM_MAX] = NAN;
-}
-
-static void put_no_point(const struct fmb_batch *batch, size_t i)
-{
     for (int k = 0; k <= FMB_DIM_MAX && batch->points; k++)
         batch->points[i][k] = NAN;
 }
@@ -289,8 +285,7 @@ static void put_nothing(const struct fmb_batch *batch, size_t i)
 {
     if (batch->contacts)
         batch->contacts[i][0] = batch->contacts[i][1] = NAN;
-    put_no_box(batch, i);
-    put_no_point(batch, i);
+    put_no_box_or_point(batch, i);
 }
 
 static void leave_open(const struct fmb_batch *batch, size_t i)
@@ -506,10 +501,8 @@ static void put_all_boxes(struct batch_block *block, const struct batch_job *job
 {
     const bool moving = kind & KERNEL_DRIFTS;
     for (size_t k = start; k < end; k++)
-        if (!batch_is_contact(block->batch->verdicts[block->first + block->slot[k]])) {
-            put_no_box(block->batch, block->first + block->slot[k]);
-            put_no_point(block->batch, block->first + block->slot[k]);
-        }
+        if (!batch_is_contact(block->batch->verdicts[block->first + block->slot[k]]))
+            put_no_box_or_point(block->batch, block->first + block->slot[k]);
     if (put_group(block, job, moving, start, end) > 0)
         put_group(block, job, !moving, start, end);
 }

@@ -872,8 +872,7 @@ INLINE lanes_mask clip_box(const struct pair_lanes *pair, const struct kernel_tr
             CHECK_BOUND(BOX_PLACE_ROUNDING, box->exact, *inner, box->slack[axis]);
             CHECK_BOUND(BOX_PLACE_ROUNDING_EXACT, is_not(box->exact), *inner, box->slack[axis]);
         }
-    good &= are_near(traits, box, ends);
-    return good;
+    return are_near(traits, box, ends) & good;
 }
 
 #endif

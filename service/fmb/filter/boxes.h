@@ -56,6 +56,15 @@ static void find_box(const struct kernel_traits traits, const struct clip_wire w
                 axis < traits.dim ? lanes_select(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
 }
 
+/* Stores a number of each lane, stride doubles apart. */
+static void put_lanes(lanes x, double *out, size_t stride)
+{
+    double at[LANES];
+    memcpy(at, &x, sizeof at);
+    for (size_t lane = 0; lane < LANES; lane++)
+        out[lane * stride] = at[lane];
+}
+
 kernel_box_function KERNEL_PASTE(kernel, KERNEL_NAME);
 
 void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kernel_kind kind)
@@ -72,17 +81,9 @@ void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kern
         gather_pairs(traits, &call->pairs[first], frame);
         set_places(traits, frame, call->duration, &pair, &places);
         find_box(traits, wire, frame, &pair, &places, box, call->points ? point : NULL);
-        for (int i = 0; i < 6; i++) {
-            double at[LANES];
-            memcpy(at, &box[i / 3][i % 3], sizeof at);
-            for (int lane = 0; lane < LANES; lane++)
-                call->boxes[first + (size_t) lane][i / 3][i % 3] = at[lane];
-        }
-        for (int k = 0; k <= FMB_DIM_MAX && call->points; k++) {
-            double at[LANES];
-            memcpy(at, &point[k], sizeof at);
-            for (int lane = 0; lane < LANES; lane++)
-                call->points[first + (size_t) lane][k] = at[lane];
-        }
+        for (int i = 0; i < 6; i++)
+            put_lanes(box[i / 3][i % 3], &call->boxes[first][i / 3][i % 3], 6);
+        for (int k = 0; k <= FMB_DIM_MAX && call->points; k++)
+            put_lanes(point[k], &call->points[first][k], 1 + FMB_DIM_MAX);
     }
 }
