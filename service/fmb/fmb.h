@@ -315,8 +315,8 @@ enum fmb_want {
     FMB_WANT_BOX = 1,
     FMB_WANT_CERTIFICATE = 2,
     FMB_WANT_TIMES = 4, /* contact intervals; fmb_decide() always gives them */
-    FMB_WANT_GAP = 8,   /* other methods than those that are certain refuse it */
-    FMB_WANT_POINT = 16 /* a point of each contact; other methods give none */
+    FMB_WANT_GAP = 8,   /* refused by methods that are not certain */
+    FMB_WANT_POINT = 16 /* a point of each contact, of methods that are certain */
 };
 
 /* An enclosure of the gap, the signed distance of two bodies over the window:
