@@ -111,8 +111,9 @@ struct fmb_robot_path {
     size_t family_count, family_capacity;
     unsigned *partner; /* [pair_count] */
     size_t pair_count, pair_capacity;
-    size_t body_pairs;  /* the same of placements */
-    size_t rigid_count; /* pairs of placements that do not move relative to each other */
+    /* Pairs of placements: of these parts; that do not move relative to each other; ignored ones,
+     * of which at least one is of the robot. */
+    size_t body_pairs, rigid_count, ignored_count;
     struct fmb_robot_touch *touches;
     size_t touch_count, touch_capacity;
     /* The edge: values of all joints of the tree. */
@@ -143,8 +144,9 @@ struct fmb_robot_path {
 /* Makes the parts, pairs and chains. Returns false after an error. */
 bool path_model_make(struct fmb_robot_path *path);
 
-/* Whether a joint that can move is between two nodes. */
-bool path_moves(const struct fmb_robot_path *path, unsigned a, unsigned b);
+/* Returns the nearest joint above a node that can move, or ROBOT_ROOT. Two nodes move relative to
+ * each other unless it is the same. */
+unsigned path_mover(const struct fmb_robot_path *path, unsigned node);
 
 /* Begins an edge: value is set. Returns false if numbers are too large. */
 bool path_edge_begin(struct fmb_robot_path *path);

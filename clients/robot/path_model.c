@@ -125,35 +125,34 @@ static bool make_parts(struct fmb_robot_path *path)
 
 /* ---- Pairs ---- */
 
-/* The joint whose child a node is, or ROBOT_ROOT. */
-static unsigned joint_above(const struct robot *tree, unsigned node)
+unsigned path_mover(const struct fmb_robot_path *path, unsigned node)
 {
-    return node < tree->link_count ? tree->links[node].joint : ROBOT_ROOT;
+    const struct robot *tree = &path->scene->robot->tree;
+    while (node < tree->link_count) {
+        const unsigned j = tree->links[node].joint;
+        if (j == ROBOT_ROOT || tree->joints[j].type != ROBOT_FIXED)
+            return j;
+        node = tree->joints[j].link[0];
+    }
+    return ROBOT_ROOT;
 }
 
-static unsigned depth_of(const struct robot *tree, unsigned node)
-{
-    unsigned depth = node < tree->link_count; /* the world is above the root */
-    for (unsigned j; (j = joint_above(tree, node)) != ROBOT_ROOT; node = tree->joints[j].link[0])
-        depth++;
-    return depth;
-}
-
-/* Finds the joints between two nodes that can move: up from a, then down to b. */
+/* Finds the joints between two nodes that can move: up from a, then down to b. Those that both have
+ * above them are not between them. */
 static void find_chain(struct fmb_robot_path *path, unsigned a, unsigned b, struct path_chain *out)
 {
     const struct robot *tree = &path->scene->robot->tree;
-    unsigned node[2] = {a, b}, depth[2] = {depth_of(tree, a), depth_of(tree, b)}, count[2] = {0, 0};
-    unsigned *side[2];
-    for (int end = 0; end < 2; end++)
-        side[end] = allocate(depth[end] + 1, sizeof *side[end]);
-    while (node[0] != node[1]) {
-        const int end = depth[0] < depth[1];
-        const unsigned j = joint_above(tree, node[end]);
-        if (j != ROBOT_ROOT && tree->joints[j].type != ROBOT_FIXED)
+    const unsigned node[2] = {a, b};
+    unsigned *side[2], count[2] = {0, 0};
+    for (int end = 0; end < 2; end++) {
+        side[end] = allocate(tree->joint_count, sizeof *side[end]);
+        for (unsigned j = path_mover(path, node[end]); j != ROBOT_ROOT;
+             j = path_mover(path, tree->joints[j].link[0]))
             side[end][count[end]++] = j;
-        node[end] = j == ROBOT_ROOT ? (unsigned) tree->link_count : tree->joints[j].link[0];
-        depth[end]--;
+    }
+    while (count[0] > 0 && count[1] > 0 && side[0][count[0] - 1] == side[1][count[1] - 1]) {
+        count[0]--;
+        count[1]--;
     }
     out->joint_count = count[0] + count[1];
     out->rising = count[0];
@@ -164,22 +163,6 @@ static void find_chain(struct fmb_robot_path *path, unsigned a, unsigned b, stru
         out->joint[count[0] + i] = side[1][count[1] - 1 - i];
     free(side[0]);
     free(side[1]);
-}
-
-bool path_moves(const struct fmb_robot_path *path, unsigned a, unsigned b)
-{
-    const struct robot *tree = &path->scene->robot->tree;
-    unsigned node[2] = {a, b}, depth[2] = {depth_of(tree, a), depth_of(tree, b)};
-    while (node[0] != node[1]) {
-        const int end = depth[0]-- < depth[1] ? 1 : 0;
-        depth[0] += (unsigned) end;
-        depth[1] -= (unsigned) end;
-        const unsigned j = joint_above(tree, node[end]);
-        if (j != ROBOT_ROOT && tree->joints[j].type != ROBOT_FIXED)
-            return true;
-        node[end] = j == ROBOT_ROOT ? (unsigned) tree->link_count : tree->joints[j].link[0];
-    }
-    return false;
 }
 
 /* Decides a pair that does not move relative to each other, exactly, where it is at home. */
@@ -205,22 +188,26 @@ static bool make_pairs(struct fmb_robot_path *path)
 {
     struct owned_scene *scene = &path->scene->owner;
     const struct path_part *parts = path->parts;
-    struct path_family *family = NULL;
     bool good = true;
     for (unsigned a = 0; a < path->robot_parts && good; a++) {
-        struct path_chain chain = {.joint = NULL};
+        struct path_family *family = NULL;
+        bool moves = false;
         for (unsigned b = a + 1; b < path->part_count && good; b++) {
             const unsigned of[2] = {parts[a].placement, parts[b].placement};
-            const bool begins = b == a + 1 || parts[b].node != parts[b - 1].node;
-            if (begins && parts[a].node != parts[b].node)
-                find_chain(path, parts[a].node, parts[b].node, &chain);
-            if (begins)
+            const bool first = parts[a].frame == 0 && parts[b].frame == 0;
+            if (b == a + 1 || parts[b].node != parts[b - 1].node) {
+                moves = path_mover(path, parts[a].node) != path_mover(path, parts[b].node);
                 family = NULL;
-            if (of[0] == of[1] || scene_leaves_out(scene, of[0], of[1]))
+            }
+            if (of[0] == of[1])
                 continue;
-            if (parts[a].node == parts[b].node || chain.joint_count == 0) {
-                path->rigid_count += parts[a].frame == 0 && parts[b].frame == 0;
-                if (parts[a].frame == 0 && parts[b].frame == 0)
+            if (scene_leaves_out(scene, of[0], of[1])) {
+                path->ignored_count += first;
+                continue;
+            }
+            if (!moves) {
+                path->rigid_count += first;
+                if (first)
                     good = decide_rigid(path, of[0], of[1]);
                 continue;
             }
@@ -228,7 +215,8 @@ static bool make_pairs(struct fmb_robot_path *path)
                 path->families = allocate_grow(path->families, &path->family_capacity,
                                                path->family_count + 1, sizeof *path->families);
                 family = &path->families[path->family_count++];
-                *family = (struct path_family){a, chain, path->pair_count, 0, 0};
+                *family = (struct path_family){.a = a, .first = path->pair_count};
+                find_chain(path, parts[a].node, parts[b].node, &family->chain);
             }
             path->partner = allocate_grow(path->partner, &path->pair_capacity, path->pair_count + 1,
                                           sizeof *path->partner);
@@ -236,7 +224,7 @@ static bool make_pairs(struct fmb_robot_path *path)
             family->count++;
             if (b < path->robot_parts)
                 family->reach = fmax(family->reach, parts[b].reach);
-            path->body_pairs += parts[a].frame == 0 && parts[b].frame == 0;
+            path->body_pairs += first;
         }
     }
     return good;

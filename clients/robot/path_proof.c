@@ -187,34 +187,24 @@ void path_proof_row(struct path_proof *proof, const struct fmb_robot_path *path,
     free(moving);
 }
 
-/* Pairs that move relative to each other, and are no pairs of the path, are ignored. */
 void path_proof_pairs(struct path_proof *proof, const struct fmb_robot_path *path)
 {
-    size_t all = 0, k = 0, used = 0;
+    int64_t rigid = 0;
     struct line line;
     begin_line(&line);
     json_begin(&line.json, "ignored", '[');
-    size_t ignored = 0;
     for (unsigned a = 0; a < path->robot_parts; a++)
         for (unsigned b = a + 1; b < path->part_count; b++) {
-            all++;
-            while (k < path->family_count && used == path->families[k].count) {
-                k++;
-                used = 0;
-            }
-            const struct path_family *family = &path->families[k];
-            if (k < path->family_count && family->a == a &&
-                path->partner[family->first + used] == b) {
-                used++;
-            } else if (path_moves(path, path->parts[a].node, path->parts[b].node)) {
-                const int64_t pair[2] = {a, b};
+            const struct path_part *x = &path->parts[a], *y = &path->parts[b];
+            const int64_t pair[2] = {a, b};
+            if (path_mover(path, x->node) == path_mover(path, y->node))
+                rigid++;
+            else if (scene_leaves_out(&path->scene->owner, x->placement, y->placement))
                 json_integers(&line.json, NULL, pair, 2);
-                ignored++;
-            }
         }
     json_end(&line.json, ']');
     json_integer(&line.json, "pairs", (int64_t) path->pair_count);
-    json_integer(&line.json, "rigid", (int64_t) (all - path->pair_count - ignored));
+    json_integer(&line.json, "rigid", rigid);
     end_line(proof, &line);
 }
 
