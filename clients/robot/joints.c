@@ -472,6 +472,8 @@ enum joint_row joint_table_next(struct joint_table *table)
     const char *label = NULL;
     size_t found;
     enum joint_row outcome = read_line(table, &found);
+    if (outcome == JOINT_ROW_END && table->rows == 0)
+        return refuse(table, "expected a row of joint values, found none");
     if (outcome == JOINT_ROW && found != table->columns)
         return refuse(table, "%zu columns, but the first line has %zu", found, table->columns);
     for (size_t i = 0; outcome == JOINT_ROW && i < found; i++) {

@@ -81,7 +81,7 @@ struct joint_table {
 bool joint_table_open(const char *path, struct joints *joints, struct joint_table *out);
 void joint_table_close(struct joint_table *table);
 
-/* Reads the next row. */
+/* Reads the next row. A table without rows is an error. */
 enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
 enum joint_row joint_table_next(struct joint_table *table);
 
