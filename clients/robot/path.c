@@ -30,6 +30,8 @@ enum {
     CONTACT_LEVEL = 17 /* a first contact is enclosed to twice 2^-17 of the edge */
 };
 
+static const struct path_direction spheres = {.kind = PATH_SPHERES};
+
 /* ---- Entries ---- */
 
 static bool comes_before(const struct path_entry *a, const struct path_entry *b)
@@ -70,15 +72,23 @@ static double target(const struct fmb_robot_path *path)
     return path->wanted > 0 && path->closest >= path->wanted ? path->wanted : 0.9 * path->closest;
 }
 
-static void prove(struct fmb_robot_path *path, unsigned a, unsigned b, double low, int level,
-                  double clearance, const struct path_direction *direction)
+static void keep(struct fmb_robot_path *path, const struct path_leaf *leaf, double clearance)
 {
     path->proven = fmin(path->proven, clearance);
     if (!path->recorded)
         return;
     path->leaves = allocate_grow(path->leaves, &path->leaf_capacity, path->leaf_count + 1,
                                  sizeof *path->leaves);
-    path->leaves[path->leaf_count++] = (struct path_leaf){a, b, level, low, *direction};
+    path->leaves[path->leaf_count++] = *leaf;
+}
+
+/* Keeps a leaf if the distance that it proves is enough. */
+static bool suffices(struct fmb_robot_path *path, const struct path_leaf *leaf, double clearance)
+{
+    const bool enough = clearance > 0 && clearance >= target(path);
+    if (enough)
+        keep(path, leaf, clearance);
+    return enough;
 }
 
 /* ---- Gaps ---- */
@@ -264,7 +274,6 @@ static void measure_nearest(struct fmb_robot_path *path)
 /* Enters all pairs that their spheres do not prove. */
 static void enter_pairs(struct fmb_robot_path *path)
 {
-    const struct path_direction spheres = {.kind = PATH_SPHERES};
     path->live_count = path->heap_count = path->leaf_count = path->work = 0;
     path->proven = INFINITY;
     for (size_t k = 0; k < path->family_count; k++) {
@@ -273,9 +282,9 @@ static void enter_pairs(struct fmb_robot_path *path)
         for (size_t i = family->first; i < family->first + family->count; i++) {
             const unsigned b = path->partner[i];
             const double bound = bound_by_spheres(&path->parts[family->a], &path->parts[b], half);
-            if (bound > 0 && bound >= target(path) && path->until == 1)
-                prove(path, family->a, b, 0, 0, bound, &spheres);
-            else
+            const struct path_leaf leaf = {
+                .a = family->a, .b = b, .chain = &family->chain, .direction = spheres};
+            if (path->until < 1 || !suffices(path, &leaf, bound))
                 enter_pair(path, family, b, bound);
         }
     }
@@ -288,58 +297,52 @@ static void begin_first(struct fmb_robot_path *path)
     enter_pairs(path);
     for (size_t i = 0; i < path->live_count && path->hit > 0; i++) {
         const struct path_bounds *bounds = &path->live[i];
-        const struct path_direction spheres = {.kind = PATH_SPHERES};
-        if (path_prove(path, bounds, &spheres, -0x1p-61, 60) <= 0)
+        if (path_prove(path, bounds, &spheres, -0x1p-61, 60) <= 0) /* the middle is 0 */
             measure(path, bounds, 0, &gap);
     }
 }
 
-/* Whether an entry is proven; if not, *gap is the gap in its middle, and *bound a lower bound of
- * the gap in the interval. */
-static bool prove_entry(struct fmb_robot_path *path, const struct path_entry *entry,
-                        struct fmb_gap *gap, double *bound)
+/* Whether an entry is proven; if not, *bound is a lower bound of the gap in the interval. */
+static bool prove_entry(struct fmb_robot_path *path, const struct path_entry *entry, double *bound)
 {
     const struct path_bounds *bounds = &path->live[entry->bounds];
     const double w = ldexp(1, -entry->level), middle = entry->low + w / 2;
-    struct path_direction direction = {.kind = PATH_SPHERES}, carried[3];
-    double proven = path_prove(path, bounds, &direction, entry->low, entry->level);
+    struct path_leaf leaf = {bounds->a,    bounds->b,  bounds->chain,
+                             entry->level, entry->low, spheres};
+    struct path_direction carried[3], best;
+    struct fmb_gap gap;
     *bound = -INFINITY;
-    if (proven > 0 && proven >= target(path)) {
-        prove(path, bounds->a, bounds->b, entry->low, entry->level, proven, &direction);
+    if (suffices(path, &leaf, path_prove(path, bounds, &spheres, entry->low, entry->level)))
         return true;
-    }
-    if (!measure(path, bounds, middle, gap))
-        *gap = (struct fmb_gap){.bounds = {-INFINITY, INFINITY}};
+    if (!measure(path, bounds, middle, &gap))
+        gap = (struct fmb_gap){.bounds = {-INFINITY, INFINITY}};
     const struct path_pose *poses = path_poses(path, middle);
-    proven = gap->bounds[0] - bounds->speed * w / 2;
-    const double proven_middle = *bound = proven;
-    direction.kind = PATH_MIDDLE;
-    path_turn_back(poses[path->parts[bounds->a].node].r, gap->direction, direction.n[0]);
-    if (proven > 0 && proven >= target(path)) {
-        prove(path, bounds->a, bounds->b, entry->low, entry->level, proven, &direction);
+    const double proven_middle = *bound = gap.bounds[0] - bounds->speed * w / 2;
+    leaf.direction.kind = PATH_MIDDLE;
+    path_turn_back(poses[path->parts[bounds->a].node].r, gap.direction, leaf.direction.n[0]);
+    if (suffices(path, &leaf, proven_middle))
         return true;
-    }
-    if (!(gap->bounds[0] > target(path)))
+    if (!(gap.bounds[0] > target(path)))
         return false;
-    const int count = list_directions(path, bounds, poses, gap->direction, carried);
+    best = leaf.direction;
+    const int count = list_directions(path, bounds, poses, gap.direction, carried);
     for (int i = 0; i < count; i++) {
-        const int k = carried[i].kind == PATH_A ? 0 : carried[i].kind == PATH_B ? 1 : 2;
-        if (proven_middle + bounds->speed * w - bounds->curve[k] * w * w / 8 < target(path))
+        const double bend = path_curve(bounds, carried[i].kind) * w * w / 8;
+        if (proven_middle + bounds->speed * w - bend < target(path))
             continue; /* more than the gap at the ends would be needed */
-        proven = path_prove(path, bounds, &carried[i], entry->low, entry->level);
-        *bound = fmax(*bound, proven);
-        if (proven > 0 && proven >= target(path)) {
-            prove(path, bounds->a, bounds->b, entry->low, entry->level, proven, &carried[i]);
+        leaf.direction = carried[i];
+        const double proven = path_prove(path, bounds, &carried[i], entry->low, entry->level);
+        if (suffices(path, &leaf, proven))
             return true;
-        }
-        direction = proven == *bound ? carried[i] : direction;
+        best = proven >= *bound ? carried[i] : best;
+        *bound = fmax(*bound, proven);
     }
-    /* An interval so short that the errors of doubles count is as good as proven by its bound. */
-    if (entry->level >= PATH_LEVEL_MAX && *bound > 0) {
-        prove(path, bounds->a, bounds->b, entry->low, entry->level, *bound, &direction);
-        return true;
-    }
-    return false;
+    /* The errors of doubles count in an interval this short: any positive bound is enough. */
+    leaf.direction = best;
+    const bool shortest = entry->level >= PATH_LEVEL_MAX && *bound > 0;
+    if (shortest)
+        keep(path, &leaf, *bound);
+    return shortest;
 }
 
 static void halve(struct fmb_robot_path *path, const struct path_entry *entry, double bound)
@@ -389,10 +392,10 @@ static bool take(struct fmb_robot_path *path, struct fmb_robot_edge *out)
         answer(path, FMB_ROBOT_CONTACT, fmin(entry.low, path->hit), path->hit, path->hit_pair, out);
         return true;
     }
-    if (prove_entry(path, &entry, &gap, &bound))
+    if (prove_entry(path, &entry, &bound))
         return false;
-    if (first &&
-        entry.level == CONTACT_LEVEL) /* a contact at its end may be no deeper than errors */
+    /* A contact at the end of the entry may be no deeper than the errors: looks beyond it. */
+    if (first && entry.level == CONTACT_LEVEL)
         measure(path, &path->live[entry.bounds], fmin(1, entry.low + ldexp(2, -CONTACT_LEVEL)),
                 &gap);
     const bool open =

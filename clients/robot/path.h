@@ -76,6 +76,7 @@ struct path_direction {
 /* An interval of an edge at which a pair is proven apart. */
 struct path_leaf {
     unsigned a, b;
+    const struct path_chain *chain;
     int level; /* its length is 2^-level */
     double low;
     struct path_direction direction;
@@ -151,6 +152,10 @@ unsigned path_mover(const struct fmb_robot_path *path, unsigned node);
 /* Begins an edge: value is set. Returns false if numbers are too large. */
 bool path_edge_begin(struct fmb_robot_path *path);
 
+/* Returns the values of all joints of the tree at a time, valid until the next call of a function
+ * of paths. */
+const double *path_values(struct fmb_robot_path *path, double time);
+
 /* Returns the poses of all nodes at a time, valid until PATH_SPARE more times are used. */
 const struct path_pose *path_poses(struct fmb_robot_path *path, double time);
 
@@ -158,14 +163,14 @@ const struct path_pose *path_poses(struct fmb_robot_path *path, double time);
 void path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain, unsigned a,
                     unsigned b, struct path_bounds *out);
 
+/* Returns K for a direction of kind A, B or E. */
+double path_curve(const struct path_bounds *bounds, enum path_kind kind);
+
 /* Returns a bound of the speed of all pairs of a family, not below those of path_bounds_of(). */
 double path_family_speed(struct fmb_robot_path *path, const struct path_family *family);
 
 /* Sets the centre of a part's sphere in the world. */
 void path_centre(const struct path_pose *poses, const struct path_part *part, double out[3]);
-
-/* Returns the error of values of a pair. */
-double path_slack(const struct fmb_robot_path *path, unsigned a, unsigned b);
 
 /* Returns a distance, or -INFINITY, that the direction proves of the pair at all times from low to
  * low + 2^-level. */

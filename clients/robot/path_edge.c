@@ -108,14 +108,10 @@ static bool bound_poses(struct fmb_robot_path *path)
     return path->round < TOO_FAR;
 }
 
-/* A value n . (b - a) of points of the pair: n and the points turned back are off by both errors of
- * rotation, the products by 400 u, times the distances; positions by their own errors. The error of
- * a gap is less. Twice that, since edges and directions have lengths of 1 up to 2^-40. */
-double path_slack(const struct fmb_robot_path *path, unsigned a, unsigned b)
-{
-    return path->parts[a].slack + path->parts[b].slack;
-}
-
+/* The slack of a pair is the sum of its parts'. In a value n . (b - a) of points of the pair, n and
+ * the points turned back are off by both errors of rotation, the products by 400 u, times the
+ * distances; positions by their own errors. The error of a gap is less. Twice that, since edges and
+ * directions have lengths of 1 up to 2^-40. */
 static void bound_parts(struct fmb_robot_path *path)
 {
     for (size_t i = 0; i < path->part_count; i++) {
@@ -126,17 +122,22 @@ static void bound_parts(struct fmb_robot_path *path)
     }
 }
 
+const double *path_values(struct fmb_robot_path *path, double time)
+{
+    for (size_t j = 0; j < path->scene->robot->tree.joint_count; j++) {
+        const double from = path->value[0][j], to = path->value[1][j];
+        path->at[j] = time == 1 ? to : from + time * (to - from);
+    }
+    return path->at;
+}
+
 /* Sets the poses of all links. Components of a quaternion that are so small that the engine refuses
  * them, far below rounding errors, become 0. */
 static void set_poses(struct fmb_robot_path *path, struct path_slot *slot)
 {
     const struct fmb_robot *robot = path->scene->robot;
     const struct robot *tree = &robot->tree;
-    for (size_t j = 0; j < tree->joint_count; j++) {
-        const double from = path->value[0][j], to = path->value[1][j];
-        path->at[j] = slot->time == 1 ? to : from + slot->time * (to - from);
-    }
-    robot_place(tree, &robot->base, path->at, path->place);
+    robot_place(tree, &robot->base, path_values(path, slot->time), path->place);
     path->place[tree->link_count] = POSE_IDENTITY;
     for (unsigned node = 0; node < path->node_count; node++) {
         struct path_pose *out = &slot->pose[node];
@@ -184,7 +185,7 @@ static double radius_about(struct fmb_robot_path *path, unsigned part, unsigned 
         path_centre(poses, of, centre);
         most = fmax(most, distance(centre, poses[link].p));
     }
-    return (most + of->ball + path_slack(path, part, part) + path->round) * PATH_OUTWARD;
+    return (most + of->ball + 2 * of->slack + path->round) * PATH_OUTWARD;
 }
 
 static void begin_chain(struct fmb_robot_path *path, struct path_chain *chain)
@@ -268,7 +269,8 @@ void path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain,
                     unsigned b, struct path_bounds *out)
 {
     const unsigned m = chain->active;
-    *out = (struct path_bounds){.a = a, .b = b, .chain = chain, .slack = path_slack(path, a, b)};
+    *out = (struct path_bounds){
+        .a = a, .b = b, .chain = chain, .slack = path->parts[a].slack + path->parts[b].slack};
     if (m == 0)
         return;
     const double whole = chain->joints[m - 1].along;
@@ -294,6 +296,11 @@ void path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain,
     out->speed *= PATH_OUTWARD;
     for (int i = 0; i < 3; i++)
         out->curve[i] *= PATH_OUTWARD;
+}
+
+double path_curve(const struct path_bounds *bounds, enum path_kind kind)
+{
+    return bounds->curve[kind == PATH_A ? 0 : kind == PATH_B ? 1 : 2];
 }
 
 /* ---- What a direction proves ---- */
@@ -364,7 +371,7 @@ double path_prove(struct fmb_robot_path *path, const struct path_bounds *bounds,
     const double apart = distance(centre[0], centre[1]);
     if (direction->kind == PATH_SPHERES)
         return apart / PATH_OUTWARD - a->ball - b->ball - bounds->speed * w / 2 - bounds->slack;
-    double bend = bounds->curve[direction->kind == PATH_A ? 0 : direction->kind == PATH_B ? 1 : 2];
+    double bend = path_curve(bounds, direction->kind);
     if (direction->kind == PATH_E)
         bend += s * s * (apart + a->ball + b->ball + bounds->speed * w / 2 + bounds->slack) *
                 PATH_OUTWARD;

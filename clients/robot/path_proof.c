@@ -264,16 +264,6 @@ static void write_direction(struct path_proof *proof, struct fmb_robot_path *pat
         json_integer(&line->json, NULL, integers[k / 3][k % 3]);
 }
 
-static const struct path_chain *chain_of(const struct fmb_robot_path *path,
-                                         const struct path_leaf *leaf, size_t *family)
-{
-    const struct path_family *at = &path->families[*family];
-    while (at->a != leaf->a || leaf->b < path->partner[at->first] ||
-           leaf->b > path->partner[at->first + at->count - 1])
-        at = &path->families[++*family];
-    return &at->chain;
-}
-
 void path_proof_edge(struct path_proof *proof, struct fmb_robot_path *path, size_t number,
                      const struct fmb_robot_edge *answer)
 {
@@ -288,7 +278,6 @@ void path_proof_edge(struct path_proof *proof, struct fmb_robot_path *path, size
     struct path_leaf *leaves = path->leaves;
     struct path_bounds bounds;
     struct line line;
-    size_t family = 0;
     begin_line(&line);
     json_integer(&line.json, "edge", (int64_t) number);
     write_vector(&line, "to", &to, 1);
@@ -309,7 +298,7 @@ void path_proof_edge(struct path_proof *proof, struct fmb_robot_path *path, size
             begin_line(&line);
             json_integers(&line.json, "pair", pair, 2);
             json_begin(&line.json, "proof", '[');
-            path_bounds_of(path, chain_of(path, leaf, &family), leaf->a, leaf->b, &bounds);
+            path_bounds_of(path, leaf->chain, leaf->a, leaf->b, &bounds);
         }
         const char kind[2] = {(char) leaf->direction.kind};
         json_begin(&line.json, NULL, '[');
