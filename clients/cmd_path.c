@@ -98,8 +98,8 @@ struct path_run {
     struct output *file;     /* of the proof; NULL: none */
     struct path_proof proof; /* if there is a file */
     double clearance;        /* to be proven; 0: none */
-    struct fmb_robot_path *path;
-    double *from, *at; /* [joints of the tree]: values of the previous row, and at a place */
+    double *from;            /* owned, [joints of the tree]: values of the previous row */
+    const double *at;        /* the same at the end of the stated part of an edge */
     size_t edges, count[FMB_ROBOT_UNDECIDED + 1];
     double least; /* proven of all edges */
     char *first;  /* owned: a command that shows the first edge that is not free */
@@ -117,13 +117,16 @@ static const struct fmb_placement *body_of(const struct path_run *run, size_t i)
     return &run->run.scene->owner.scene.placements[i];
 }
 
-static void write_name(const struct path_run *run, size_t i)
+static void write_names(const struct path_run *run, size_t a, size_t b)
 {
-    const struct fmb_placement *body = body_of(run, i);
-    if (body->name)
-        escape_text(stdout, body->name);
-    else
-        printf("%" PRId64, body->id);
+    for (int k = 0; k < 2; k++) {
+        const struct fmb_placement *body = body_of(run, k == 0 ? a : b);
+        fputs(k == 0 ? "" : ", ", stdout);
+        if (body->name)
+            escape_text(stdout, body->name);
+        else
+            printf("%" PRId64, body->id);
+    }
 }
 
 /* ---- The command that shows a pose ---- */
@@ -179,12 +182,12 @@ static void write_command(const struct path_run *run, FILE *out)
             fputs(names[i], out);
             write_word(out, texts[i]);
         }
+    bool based = false;
     for (int i = 0; i < 6; i++)
-        if (options->robot.base[0] != 0 || options->robot.base[1] != 0 ||
-            options->robot.base[2] != 0 || options->robot.base[3] != 0 ||
-            options->robot.base[4] != 0 || options->robot.base[5] != 0)
-            fprintf(out, "%s%s", i == 0 ? " --base=" : ",",
-                    number_exact(options->robot.base[i], number));
+        based = based || options->robot.base[i] != 0;
+    for (int i = 0; i < 6 && based; i++)
+        fprintf(out, "%s%s", i == 0 ? " --base=" : ",",
+                number_exact(options->robot.base[i], number));
     if (options->sides != ENCLOSURE_SIDES)
         fprintf(out, " --sides %ld", options->sides);
     if (options->robot.excess > 0)
@@ -243,11 +246,8 @@ static void write_row(const struct path_run *run, const struct edge *edge,
     printf("%6zu  %-9s  %-24s  %-11s  %-11s  ", edge->number, verdicts[answer->verdict], at,
            proven ? number_short(answer->clearance, text[2]) : "-",
            number_short(answer->closest, text[3]));
-    if (answer->has_pair) {
-        write_name(run, answer->a);
-        fputs(", ", stdout);
-        write_name(run, answer->b);
-    }
+    if (answer->has_pair)
+        write_names(run, answer->a, answer->b);
     if (*edge->label) {
         fputs("  from ", stdout);
         escape_text(stdout, edge->label);
@@ -262,27 +262,24 @@ static void write_edge(struct path_run *run, const struct edge *edge,
         "  edge  verdict    at                        clearance    closest      pair\n";
     run->count[answer->verdict]++;
     run->least = fmin(run->least, answer->clearance);
-    const bool shown = answer->verdict != FMB_ROBOT_FREE;
-    for (size_t j = 0; j < run->run.robot->tree.joint_count; j++) {
-        const double from = run->path->value[0][j], to = run->path->value[1][j];
-        run->at[j] = answer->at[1] == 1 ? to : from + answer->at[1] * (to - from);
-    }
+    run->at = path_values(run->run.path, answer->at[1]);
     progress_clear();
-    if (shown && !run->first) {
-        size_t size;
-        FILE *out = open_memstream(&run->first, &size);
-        if (!out)
-            allocate_failed();
-        write_command(run, out);
-        fclose(out);
-        fputs(run->json ? "" : heading, stdout);
-    }
-    if (run->json)
+    if (run->json) {
         write_json(run, edge, answer);
-    else if (shown)
+    } else if (answer->verdict != FMB_ROBOT_FREE) {
+        if (!run->first) {
+            size_t size;
+            FILE *out = open_memstream(&run->first, &size);
+            if (!out)
+                allocate_failed();
+            write_command(run, out);
+            fclose(out);
+            fputs(heading, stdout);
+        }
         write_row(run, edge, answer);
+    }
     if (run->file)
-        path_proof_edge(&run->proof, run->path, edge->number, answer);
+        path_proof_edge(&run->proof, run->run.path, edge->number, answer);
     progress_to((int64_t) edge->number, (int64_t) run->edges);
 }
 
@@ -298,7 +295,7 @@ static const char *verdict_of(const struct path_run *run)
 static void write_touches(struct path_run *run)
 {
     const struct fmb_robot_touch *touches;
-    const size_t count = fmb_robot_path_touches(run->path, &touches);
+    const size_t count = fmb_robot_path_touches(run->run.path, &touches);
     for (size_t i = 0; i < count; i++) {
         const struct fmb_robot_touch *touch = &touches[i];
         run->count[FMB_ROBOT_CONTACT] += touch->verdict == FMB_OVERLAPPING;
@@ -311,9 +308,7 @@ static void write_touches(struct path_run *run)
         }
         printf("%s, at all times, as they do not move relative to each other: ",
                fmb_verdict_name((int) touch->verdict));
-        write_name(run, touch->a);
-        fputs(", ", stdout);
-        write_name(run, touch->b);
+        write_names(run, touch->a, touch->b);
         putchar('\n');
     }
 }
@@ -321,18 +316,14 @@ static void write_touches(struct path_run *run)
 static void write_end(const struct path_run *run)
 {
     const bool proven = run->count[FMB_ROBOT_CONTACT] + run->count[FMB_ROBOT_UNDECIDED] == 0;
-    const double lever = fmb_robot_path_lever(run->path);
-    const size_t moved = fmb_robot_moved(run->run.scene);
-    const size_t bodies = run->run.scene->owner.scene.placement_count;
-    const size_t pairs = moved * (moved - 1) / 2 + moved * (bodies - moved);
+    const double lever = fmb_robot_path_lever(run->run.path);
     char text[2][NUMBER_TEXT_MAX];
     if (run->json) {
         struct json_writer json = json_object(stdout);
         json_string(&json, "path", verdict_of(run));
         json_integer(&json, "edges", (int64_t) run->edges);
-        json_integer(&json, "pairs", (int64_t) fmb_robot_path_pairs(run->path));
-        json_integer(&json, "ignored",
-                     (int64_t) (pairs - fmb_robot_path_pairs(run->path) - run->path->rigid_count));
+        json_integer(&json, "pairs", (int64_t) fmb_robot_path_pairs(run->run.path));
+        json_integer(&json, "ignored", (int64_t) run->run.path->ignored_count);
         if (proven) {
             json_number(&json, "clearance", run->least);
             json_number(&json, "joint_error", run->least / lever);
@@ -371,7 +362,7 @@ static bool take_rows(struct path_run *run, struct joint_table *table, bool prov
         strcpy(label, table->label);
         memcpy(run->from, joints->value, size);
         if (run->file && !prove)
-            path_proof_row(&run->proof, run->path, run->from);
+            path_proof_row(&run->proof, run->run.path, run->from);
         row = joint_table_next(table);
         if (row == JOINT_ROW_BAD || (row == JOINT_ROW_END && number > 1))
             break;
@@ -379,13 +370,13 @@ static bool take_rows(struct path_run *run, struct joint_table *table, bool prov
             edge.time[1] = table->time;
         if (!prove) {
             run->edges = number;
-            good = joints->refused || path_set_edge(run->path, run->from, joints->value) == 0;
+            good = joints->refused || path_set_edge(run->run.path, run->from, joints->value) == 0;
             if (!good)
-                robot_world_print(table->place, fmb_robot_path_why(run->path));
+                robot_world_print(table->place, fmb_robot_path_why(run->run.path));
             continue;
         }
-        path_edge_of(run->path, run->from, joints->value);
-        while (!fmb_robot_path_step(run->path, &answer))
+        path_edge_of(run->run.path, run->from, joints->value);
+        while (!fmb_robot_path_step(run->run.path, &answer))
             ;
         write_edge(run, &edge, &answer);
         good = !ferror(stdout);
@@ -397,7 +388,7 @@ static bool take_rows(struct path_run *run, struct joint_table *table, bool prov
 static bool compare(struct path_run *run)
 {
     size_t rows, line;
-    const char *why = path_proof_compare(run->check, run->path, &rows, &line);
+    const char *why = path_proof_compare(run->check, run->run.path, &rows, &line);
     if (why && line > 0)
         complain("%s: line %zu: %s", run->check, line, why);
     else if (why)
@@ -415,22 +406,21 @@ static bool prove_table(struct path_run *run)
 {
     struct joint_table table;
     struct joints *joints = &run->run.joints;
-    if (fmb_robot_path_begin(run->run.scene, run->clearance, &run->path) != 0) {
-        robot_world_print("", fmb_robot_path_why(run->path));
+    if (fmb_robot_path_begin(run->run.scene, run->clearance, &run->run.path) != 0) {
+        robot_world_print("", fmb_robot_path_why(run->run.path));
         return false;
     }
-    run->run.path = run->path;
     if (run->check)
         return compare(run);
     if (!output_open(&run->output, &run->file))
         return false;
-    run->path->recorded = run->file != NULL;
+    run->run.path->recorded = run->file != NULL;
     if (run->file && !path_proof_begin(run->file->file, &run->proof)) {
         output_complain(run->output.path, ENOMEM);
         return false;
     }
     if (run->file)
-        path_proof_bodies(&run->proof, run->path);
+        path_proof_bodies(&run->proof, run->run.path);
     bool good = joint_table_open(run->options->table, joints, &table) &&
                 take_rows(run, &table, false) && joints_check(joints);
     if (good) {
@@ -439,7 +429,7 @@ static bool prove_table(struct path_run *run)
         progress_begin("edges");
         write_touches(run);
         if (run->file)
-            path_proof_pairs(&run->proof, run->path);
+            path_proof_pairs(&run->proof, run->run.path);
         good = joint_table_rewind(&table) && take_rows(run, &table, true);
         progress_end();
     }
@@ -460,15 +450,12 @@ static int prove_file(struct path_run *run)
     if (good) {
         const size_t joints = run->run.robot->tree.joint_count;
         run->from = allocate(joints, sizeof *run->from);
-        run->at = allocate(joints, sizeof *run->at);
         if (run->clearance < 0)
             run->clearance = run->run.scene->owner.scene.margin;
         good = prove_table(run);
     }
-    fmb_robot_path_free(run->path);
     robot_run_end(&run->run);
     free(run->from);
-    free(run->at);
     free(run->first);
     good = output_flush() && good;
     return !good                                                            ? ARGS_USAGE

@@ -160,8 +160,7 @@ static void report_pairs(const struct robot_run *run, FILE *out)
     const uint64_t still = run->path ? n - fmb_robot_moved(scene) : 0; /* bodies of the world */
     const uint64_t tested = run->path ? run->path->body_pairs + run->path->rigid_count
                                       : scene_count_pairs(&scene->owner);
-    const uint64_t pairs = n * (n - 1) / 2 - (still > 0 ? still * (still - 1) / 2 : 0);
-    const uint64_t ignored = pairs - tested;
+    const uint64_t ignored = run->path ? run->path->ignored_count : n * (n - 1) / 2 - tested;
     uint64_t count[ROBOT_ORIGINS + 2] = {0};
     const char *before = ": ";
     for (size_t i = 0; i < scene->ignored.count; i++)
@@ -273,6 +272,7 @@ void robot_run_end(struct robot_run *run)
     for (size_t w = 0; w < run->options->world_count; w++)
         robot_world_clear(&run->worlds[w]);
     free(run->worlds);
+    fmb_robot_path_free(run->path);
     fmb_robot_scene_free(run->scene);
     fmb_robot_free(run->robot);
 }

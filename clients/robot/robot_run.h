@@ -64,8 +64,8 @@ struct robot_run {
     struct fmb_robot_scene *scene;
     struct robot_world *worlds; /* [options->world_count] */
     struct joints joints;
-    const struct fmb_robot_path *path; /* fmb path: which pairs are tested; else NULL */
-    double size[3]; /* of the bodies of links in the first pose, along each axis */
+    struct fmb_robot_path *path; /* of fmb path: has the pairs that are tested; else NULL */
+    double size[3];              /* of the bodies of links in the first pose, along each axis */
 };
 
 /* Reads the robot and the worlds, and makes the scene. Returns false after errors, which were
