@@ -131,14 +131,21 @@ int64_t fmb_flat_decide_all(struct fmb_flat_scene *scene, double duration, int i
 size_t fmb_flat_count(const struct fmb_flat_scene *scene);
 
 /* Copies the n answers to data, which is aligned for doubles: the arrays below that were wanted,
- * one directly after the other. There are gaps, too, if the margin is not 0. pairs       int64
- * [n][a, b]; not of a list, nor of fmb_flat_pair() contacts    double [n][first, last], NAN unless
- * they meet boxes       double [n][lower, upper][dim], NAN unless they meet points      double
- * [n][time, coordinates], NAN unless they meet gaps        double [n][lower, upper bound], NAN if
- * there is none; the next four are then undefined directions  double [n][dim] times       double
- * [n], NAN unless there are witness points witnesses   double [n][of a, of b][dim], NAN where there
- * are none frames      int64 [n][of a, of b], indices of the frames that have this gap statuses
- * int32 [n], FMB_OK, or why there is no verdict verdicts    uint8 [n], enum fmb_verdict; 0: none */
+ * in this order and without space between them. A margin other than 0 requests gaps too.
+ *
+ *     pairs       int64 [n][a, b]; absent after a list, and after fmb_flat_pair()
+ *     contacts    double [n][first, last], NAN unless they meet
+ *     boxes       double [n][lower, upper][dim], NAN unless they meet
+ *     points      double [n][time, coordinates], NAN unless they meet
+ *     gaps        double [n][lower, upper bound], NAN if there is none; the row of that pair
+ *                 is then undefined in the next four arrays
+ *     directions  double [n][dim]
+ *     times       double [n], NAN unless there are witness points
+ *     witnesses   double [n][of a, of b][dim], NAN unless there are witness points
+ *     frames      int64 [n][of a, of b], indices of the frames that have this gap
+ *     statuses    int32 [n], FMB_OK, or why there is no verdict
+ *     verdicts    uint8 [n], enum fmb_verdict; 0: none
+ */
 void fmb_flat_pack(const struct fmb_flat_scene *scene, void *data);
 
 #ifdef __cplusplus
