@@ -1,14 +1,34 @@
 #include "urdf_reader.h"
 
+#include "allocate.h"
+
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* Reads a file, or its first bytes if it has more than ROBOT_BYTES_MAX. Check ferror(). */
+static unsigned char *read_bytes(FILE *file, struct owned_scene *memory, size_t *size)
+{
+    unsigned char *bytes = NULL;
+    size_t capacity = 0;
+    *size = 0;
+    while (!feof(file) && !ferror(file) && *size <= ROBOT_BYTES_MAX) {
+        bytes = allocate_grow(bytes, &capacity, *size + BUFSIZ, 1);
+        *size += fread(bytes + *size, 1, capacity - *size, file);
+    }
+    unsigned char *out = scene_alloc(memory, *size, 1);
+    if (*size > 0)
+        memcpy(out, bytes, *size);
+    free(bytes);
+    return out;
+}
 
 const struct xml_element *urdf_open(struct robot *robot, const char *path)
 {
     const bool named = strcmp(path, "-") != 0;
     FILE *file = named ? fopen(path, "r") : stdin;
-    unsigned char *bytes = scene_alloc(&robot->memory, ROBOT_BYTES_MAX + 1, 1);
-    const size_t size = file ? fread(bytes, 1, ROBOT_BYTES_MAX + 1, file) : 0;
+    size_t size = 0;
+    unsigned char *bytes = file ? read_bytes(file, &robot->memory, &size) : NULL;
     const char *why = !file || ferror(file)    ? strerror(errno)
                       : size > ROBOT_BYTES_MAX ? "more than 8 MB"
                                                : NULL;
