@@ -204,18 +204,16 @@ void joints_clear(struct joints *joints)
 void joints_follow(struct joints *joints, const char *path, unsigned long line)
 {
     const struct robot *robot = joints->robot;
+    robot_follow(robot, joints->given, joints->value);
     for (size_t j = 0; j < robot->joint_count; j++) {
         const struct robot_joint *joint = &robot->joints[j];
         if (!joint->mimic_name)
             continue;
-        const double follows = joint->multiplier * joints->value[joint->mimic] + joint->offset;
-        const double by = fabs(joints->value[j] - follows);
-        if (!joints->given[j]) {
-            joints->value[j] = follows;
+        const double by = fabs(joints->value[j] - robot_mimic(joint, joints->value));
+        if (!joints->given[j])
             check_value(joints, j, path, line);
-        } else if (by > joints->mimic.by) {
+        else if (by > joints->mimic.by)
             joints->mimic = (struct joint_report){joints->value[j], by, j, path, line};
-        }
     }
 }
 

@@ -214,12 +214,17 @@ double robot_home(const struct robot_joint *joint)
     return limit[0] <= 0 && limit[1] >= 0 ? 0 : limit[0] / 2 + limit[1] / 2;
 }
 
+double robot_mimic(const struct robot_joint *joint, const double *value)
+{
+    return joint->multiplier * value[joint->mimic] + joint->offset;
+}
+
 void robot_follow(const struct robot *robot, const bool *given, double *value)
 {
     for (size_t j = 0; j < robot->joint_count; j++) {
         const struct robot_joint *joint = &robot->joints[j];
         if (joint->mimic_name && !(given && given[j]))
-            value[j] = joint->multiplier * value[joint->mimic] + joint->offset;
+            value[j] = robot_mimic(joint, value);
     }
 }
 

@@ -116,8 +116,8 @@ __attribute__((format(printf, 3, 4))) bool robot_refuse(struct robot *robot, uns
 void robot_begin(struct robot *robot, const char *kind, const char *name);
 
 /* Connects links and joints by their names, and sets order; if the robot is bad, only checks names.
- * Returns false after an error: they are not a tree. Called by
- * robot_read(). Cost: O(link_count * depth of the tree). */
+ * robot_read() calls it. Returns false after an error: they are not a tree. Cost: O(link_count *
+ * depth of the tree). */
 bool robot_connect(struct robot *robot);
 
 /* Adds a copy of a name to a table. If the name is in the table already, returns NULL, and *first
@@ -132,8 +132,12 @@ const struct robot_joint *robot_find_joint(const struct robot *robot, const char
  * outside. */
 double robot_home(const struct robot_joint *joint);
 
-/* Sets the values of mimic joints from those of the joints that they follow. given: [joint_count],
- * joints whose values are kept; NULL: none. */
+/* Returns the value of a mimic joint, from the value of the joint that it follows. value:
+ * [joint_count]. */
+double robot_mimic(const struct robot_joint *joint, const double *value);
+
+/* Sets the values of all mimic joints. given: [joint_count], joints whose values are kept; NULL:
+ * none. */
 void robot_follow(const struct robot *robot, const bool *given, double *value);
 
 /* Returns why a value cannot be used, "is not finite" or "is beyond 1048576 radians"; or NULL. */
