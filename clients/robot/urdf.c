@@ -38,21 +38,18 @@ static void read_origin(struct robot *robot, const struct xml_element *parent, s
 {
     const struct xml_element *node = urdf_child(robot, parent, "origin");
     double q[4] = {0};
-    bool has_rpy = false, has_q = false;
     *out = POSE_IDENTITY;
     memset(rpy, 0, 3 * sizeof *rpy);
     if (!node)
         return;
-    for (const char **at = node->attributes; *at; at += 2) {
-        has_rpy = has_rpy || strcmp(at[0], "rpy") == 0;
-        has_q = has_q || strcmp(at[0], "quat_xyzw") == 0;
+    const bool has_rpy = xml_attribute(node, "rpy"), has_q = xml_attribute(node, "quat_xyzw");
+    for (const char **at = node->attributes; *at; at += 2)
         if (strcmp(at[0], "xyz") != 0 && strcmp(at[0], "rpy") != 0 &&
             strcmp(at[0], "quat_xyzw") != 0)
             robot_refuse(robot, node->line,
                          "<origin>: %.64s is not supported: give xyz, and rpy or "
                          "quat_xyzw",
                          at[0]);
-    }
     read_numbers(robot, node, "xyz", false, 3, out->p);
     read_numbers(robot, node, "rpy", false, 3, rpy);
     read_numbers(robot, node, "quat_xyzw", false, 4, q);
@@ -278,8 +275,8 @@ static void read_robot(struct robot *robot, const struct xml_element *root)
                      "robot as URDF",
                      root->name);
     const char *title = urdf_attribute(robot, root, "name", false);
-    if (title && *title)
-        robot->title = scene_text(&robot->memory, title);
+    if (title)
+        robot->title = title;
     for (const struct xml_element *node = root->child; node && !robot->failed; node = node->next) {
         for (size_t i = 0; i < sizeof srdf / sizeof *srdf; i++)
             if (xml_is(node, srdf[i]))
