@@ -48,10 +48,10 @@ void progress_to(int64_t done, int64_t total)
 
 void progress_clear(void)
 {
-    if (line.shown)
-        fputs("\r\033[K", stderr);
-    if (allowed)
-        line.shown = false;
+    if (!line.shown)
+        return;
+    fputs("\r\033[K", stderr);
+    line.shown = false;
 }
 
 void progress_end(void)
