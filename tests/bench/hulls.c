@@ -536,6 +536,17 @@ static void row(struct bench *bench, const struct kind *kind, const struct conta
     hulls_close(&hulls);
 }
 
+static void table(struct bench *bench, const char *name, const struct kind *kind, int kind_count,
+                  const struct contact *contact, int contact_count, double far)
+{
+    peers_help();
+    json_begin(&bench->json, name, '[');
+    for (int i = 0; i < kind_count; i++)
+        for (int k = 0; k < contact_count; k++)
+            row(bench, &kind[i], &contact[k], far);
+    json_end(&bench->json, ']');
+}
+
 void hulls_run(struct bench *bench)
 {
     if (!bench_wants(bench, "hulls"))
@@ -546,12 +557,7 @@ void hulls_run(struct bench *bench)
         "placements; +box, +gap: with these. Others are given the vertices turned, and rounded.\n"
         "In parentheses, the percentage of answers that are wrong: in whether the two meet, or\n"
         "off by more than 1e-9 where another library gives a gap.\n");
-    peers_help();
-    json_begin(&bench->json, "hulls", '[');
-    for (int i = 0; i < COUNT(kinds); i++)
-        for (int k = 0; k < COUNT(contacts); k++)
-            row(bench, &kinds[i], &contacts[k], 1e-9);
-    json_end(&bench->json, ']');
+    table(bench, "hulls", kinds, COUNT(kinds), contacts, COUNT(contacts), 1e-9);
 }
 
 void radii_run(struct bench *bench)
@@ -562,10 +568,6 @@ void radii_run(struct bench *bench)
         "\nShapes with a radius, and boxes and hulls of 100 vertices; the same runs and numbers.\n"
         "Others have their own spheres and capsules, or a support function. A gap is wrong if\n"
         "it is off by more than 1e-6, or if its sign is wrong.\n");
-    peers_help();
-    json_begin(&bench->json, "radii", '[');
-    for (int i = 0; i < COUNT(round_kinds); i++)
-        for (int k = 0; k < COUNT(round_contacts); k++)
-            row(bench, &round_kinds[i], &round_contacts[k], 1e-6);
-    json_end(&bench->json, ']');
+    table(bench, "radii", round_kinds, COUNT(round_kinds), round_contacts, COUNT(round_contacts),
+          1e-6);
 }
