@@ -70,8 +70,8 @@ enum json_outcome {
  * FMB_CLIENT_BODY_BYTES_MAX is refused whether or not the bus is used. */
 enum json_outcome json_next(struct json_reader *reader, struct owned_scene *out);
 
-/* For programs: the process ends with status 1 if the parser runs out of memory, which otherwise
- * looks like invalid JSON. Changes cJSON for the whole process. */
+/* For programs: ends the process with status 1 if the parser runs out of memory. Without this call,
+ * that looks like invalid JSON. Changes cJSON for the whole process. */
 void json_exit_without_memory(void);
 
 /* Accepts "link" in bodies of the following scenes: the link of a robot that carries the body. */

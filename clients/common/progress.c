@@ -12,7 +12,8 @@ static const int64_t first_after_ns = 1000000000, every_ns = 200000000;
 /* Calls of progress_to() for each reading of the clock. */
 enum { STEPS = 64 };
 
-static bool allowed; /* if not, no variable here is written: threads may call the functions */
+/* If false, no variable here is written, so that threads may call the functions. */
+static bool allowed;
 
 static struct {
     const char *unit; /* NULL: there is no count, or no terminal */

@@ -90,8 +90,9 @@ struct report_printer {
  * "names" is present if a body has a name, "witness" if the gap has one (fmb.h). frames are the
  * indices, from 0, of the frames of a and b that have the gap, where a or b has several. Doubles
  * read back bit for bit. null is an infinite end of a box, outward; an infinite bound of a gap,
- * positive where separated, else negative; or an infinite coordinate of a point. A "certificate"
- * comes last; a pair that could not be decided has an "error" in place of the verdict.
+ * positive if the pair is separated, negative if it overlaps; or an infinite coordinate of a point.
+ * A "certificate" comes last; a pair that could not be decided has an "error" in place of the
+ * verdict.
  *
  * In a table it is a line for people; a certificate, which is shortened if it is long, has a line
  * of its own. indent: the columns of the line that are printed already.

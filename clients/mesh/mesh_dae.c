@@ -2,9 +2,9 @@
  * a geometry become vertices, transformed, and faces. Numbers are read from the bytes of the file,
  * so that errors name their line.
  *
- * Files are not trusted (xml.h). Nodes may contain instances of other nodes, so a small file may
- * describe any number of faces. So the bytes that are read, repetitions included, and the depth are
- * bounded, and a node that contains itself is an error. */
+ * Files are not trusted (xml.h). Nodes may contain instances of other nodes, so that a small file
+ * may describe any number of faces. Therefore the bytes that are read, repetitions included, and
+ * the depth are bounded, and a node that contains itself is an error. */
 #include "mesh_source.h"
 
 #include "turn.h"
@@ -199,11 +199,11 @@ static bool add_vertices(struct dae *dae, const struct xml_element *vertices,
     return true;
 }
 
-/* A list of primitives: triangles or a polylist, in one <p>; or polygons, each in its own. */
+/* A list of primitives: triangles or a polylist, in one <p>; or polygons, each in its own <p>. */
 struct set {
     const struct xml_element *element, *p; /* p: the list of indices that is read */
-    size_t count, stride,
-        offset; /* a corner has `stride` indices; that of its vertex is at `offset` */
+    size_t count;
+    size_t stride, offset; /* a corner has `stride` indices; the one at `offset` is its vertex */
 };
 
 /* Adds the faces of a polygon. */

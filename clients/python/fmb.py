@@ -602,7 +602,7 @@ class Answer(NamedTuple):
     gap: Optional[tuple[float, float]]  #: lower and upper bound of the signed distance
     direction: Optional[Vector]  #: of the gap, from a to b, (dim,)
     time: Optional[float]  #: of the witness points, seconds; None if the gap has none
-    witness: Optional[tuple[Vector, Vector]]  #: the nearest points of a and b, or the deepest ones
+    witness: Optional[tuple[Vector, Vector]]  #: the nearest or deepest points of a and b
     frames: Optional[tuple[int, int]]  #: indices of the frames of a and b that have this gap
 
 
@@ -660,7 +660,7 @@ class Answers(Sequence):
     directions: (n, dim), of the gap, from a to b
     times: (n,), of the witness points, seconds; NaN if there are none. Separated pairs have them, and
         pairs that overlap may
-    witnesses: (n, 2, dim), [pair][of a, of b], the nearest or deepest points at that time; NaN likewise
+    witnesses: (n, 2, dim), [pair][of a, of b], the nearest or deepest points at that time; NaN if there are none
     frames: (n, 2) int64, indices of the frames of a and b that have this gap
     """
 

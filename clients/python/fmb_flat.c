@@ -104,12 +104,12 @@ struct fmb_flat_scene {
     struct fmb_placement *placements;
     char *names;
     struct fmb_prepared *prepared;
-    struct column listed, ignored; /* unsigned [][2]: indices of placements */
-    struct column own;             /* likewise: the pairs of fmb_flat_scene_make() */
+    /* unsigned [][2]: indices of placements. own: the ignored pairs of fmb_flat_scene_make(). */
+    struct column listed, ignored, own;
     size_t own_count;
     struct column memory; /* bytes: of a struct fmb_scene_state */
-    /* The scene that was decided in `memory`, if it can be begun again, else NULL; and the number
-     * of first placements that contain all that have moved since. */
+    /* For fmb_scene_again(): the last scene that was decided in `memory`, and its state; NULL if it
+     * cannot be begun again. Only the first `moved` placements have changed since. */
     struct fmb_scene_state *state;
     struct fmb_scene begun;
     size_t moved;
@@ -320,7 +320,7 @@ static bool reserve_answers(struct fmb_flat_scene *scene, size_t count)
     return ok;
 }
 
-/* Appends rows to the columns, which have space for them. from: their data, of each column. */
+/* Appends rows to the columns, which have space for them. from: [column], the rows. */
 static void add_rows(struct fmb_flat_scene *scene, const void *const from[COLUMN_COUNT],
                      size_t count)
 {
@@ -470,7 +470,7 @@ int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64
     return scene->failed ? refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0) : answer.status;
 }
 
-/* Sets `ignored` to the given pairs and those of the scene. */
+/* Sets `ignored` to the given pairs and the ignored pairs of the scene. */
 static int convert_ignored(struct fmb_flat_scene *flat, size_t own, const int64_t *pairs,
                            size_t count)
 {
@@ -525,7 +525,7 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
                                     .label = label};
     if (client)
         return decide_on_bus(flat, client, &scene);
-    if (!is_again(flat, &scene)) /* otherwise fmb_scene_again() checks those that moved */
+    if (!is_again(flat, &scene)) /* fmb_scene_again() checks what moved */
         status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
     if (status == FMB_OK) {
         status = pairs && flat->single && margin == 0 ? decide_batch(flat, &scene)

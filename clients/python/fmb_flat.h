@@ -2,8 +2,8 @@
  * flat arrays and opaque handles; no bool and no callback crosses this interface, and of structs
  * only pointers. fmb.py uses it. fmb.h and fmb_client.h define what the numbers mean.
  *
- * Arrays are row-major and owned by the caller, who may change them after the call. dim is that of
- * the bodies, 2 or 3.
+ * Arrays are row-major and owned by the caller, who may change them after the call. dim is the
+ * dimension of the bodies, 2 or 3.
  *
  * Status: a function that returns int returns FMB_OK (0) or a value of enum fmb_status (positive)
  * or enum fmb_client_status (negative).
@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /* The number of this interface. It is raised when a function changes or is removed. fmb_flat_abi()
- * returns that of the library. */
+ * returns the number of the library. */
 enum { FMB_FLAT_ABI = 2 };
 int fmb_flat_abi(void);
 
@@ -81,13 +81,13 @@ void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *pla
 
 /* In a child process after a fork during which another thread was using the scene: makes the scene
  * usable, without answers. If the thread was in fmb_flat_place() or fmb_flat_take(), the poses of
- * those placements have to be set again. Memory that the thread was using is not freed. */
+ * these placements have to be set again. Memory that the thread was using is not freed. */
 void fmb_flat_scene_forked(struct fmb_flat_scene *scene);
 
 /* Returns what was wrong in the last call that failed: "positions[3]: not a finite number". */
 const char *fmb_flat_why(const struct fmb_flat_scene *scene);
 
-/* Sets poses and velocities of placements first to first + count - 1; after an error, of none.
+/* Sets poses and velocities of placements first to first + count - 1; changes none after an error.
  * In:  positions     [count][dim], or NULL: unchanged
  *      orientations  [count][4], in 2D [count][2], or NULL: unchanged
  *      velocities    [count][dim], per second, or NULL: unchanged
@@ -104,16 +104,16 @@ struct fmb_client;
 int fmb_flat_pair(struct fmb_flat_scene *scene, struct fmb_client *client, int64_t a, int64_t b,
                   double duration, unsigned want);
 
-/* Decides pairs, and keeps the answers in the scene until the next call: of each pair of a list;
- * otherwise of those that touch, overlap, are near, or have no verdict. In process, if only the
- * first placements have changed since the last call, the preparation of the others is reused
- * (fmb_scene_again()).
+/* Decides pairs, and keeps answers in the scene until the next call: with a list, of each of its
+ * pairs; without a list, of the pairs that touch, overlap, are near, or have no verdict. In
+ * process, if only the first placements have changed since the last call, the preparation of the
+ * others is reused (fmb_scene_again()).
  * In:  client   NULL: in process; or as fmb_client_query()
  *      instant  not 0: the window is [0, 0] even if bodies move
  *      want     a sum of FMB_WANT_TIMES, FMB_WANT_BOX, FMB_WANT_POINT and FMB_WANT_GAP
  *      split    pairs of the first split placements with the others; negative: all pairs
  *      pairs    [pair_count][2], a list, with which split is not read; NULL: no list
- *      ignored  [ignored_count][2], besides those of the scene; none with a list
+ *      ignored  [ignored_count][2], in addition to those of the scene; not with a list
  *      label    of the scene, or NULL
  * Returns a status of fmb_scene_check() or fmb_client_query(); FMB_BAD_NAME (of the label); or
  * NO_MEMORY. */

@@ -27,7 +27,7 @@ static void put_box(FILE *out, int dim, const struct fmb_answer *answer)
                 number_short(answer->box[1][axis], text[1]));
 }
 
-/* If both sides have a gap, only one of them has witness points. */
+/* both: both sides have a gap. They then differ in whether they have witness points. */
 static void put_gap(FILE *out, const struct fmb_gap *gap, bool both)
 {
     char text[2][NUMBER_TEXT_MAX];

@@ -48,7 +48,7 @@ static bool make_bodies(struct fmb_robot *robot)
 static void find_neighbours(struct fmb_robot *robot)
 {
     const struct robot *tree = &robot->tree;
-    /* Of each link: its own body, or else that of the nearest link above it that has one; and the
+    /* Of each link: its own body, or the body of the nearest link above it that has one; and the
      * topmost link of the rigid body that it is part of. */
     unsigned *body = allocate(tree->link_count, sizeof *body);
     unsigned *rigid = allocate(tree->link_count, sizeof *rigid);

@@ -36,7 +36,7 @@ struct fmb_robot;
 
 /* A field that is 0 or NULL has its default. */
 struct fmb_robot_options {
-    const char *srdf;         /* SRDF file: of pairs of links, those that it disables are ignored */
+    const char *srdf;         /* SRDF file; the pairs of links that it disables are ignored */
     const char *package_path; /* folders of packages, separated by colons: see the README */
     double base[6];           /* pose of the root: x, y, z, and roll, pitch, yaw, as in URDF */
     int sides;                /* of the hulls of cylinders, a multiple of 4 up to 512; 0: 16 */
@@ -110,7 +110,7 @@ const struct fmb_robot_world *fmb_robot_json_get(const struct fmb_robot_json *js
 
 /* Makes a scene: first the bodies of links, as placements 0 to number - 1 with ids from 1 on and
  * the names of the links; then carried bodies; then the others, each in the order of the worlds.
- * Bodies whose ids are taken get others. Links that fixed joints alone connect have one group,
+ * Bodies whose ids are taken get new ids. Links that fixed joints alone connect have one group,
  * unless there is an SRDF file. duration and margin are the largest of the worlds. The robot is in
  * its home pose.
  * In:  worlds  [world_count]
@@ -128,8 +128,8 @@ const char *fmb_robot_scene_why(struct fmb_robot_scene *scene);
 /* Returns the scene, whose placements fmb_robot_place() changes. */
 const struct fmb_scene *fmb_robot_scene_get(const struct fmb_robot_scene *scene);
 
-/* Returns the number of placements that fmb_robot_place() changes, the first ones: for
- * fmb_scene_again(). */
+/* Returns the number of placements that fmb_robot_place() changes: they are the first ones, as
+ * fmb_scene_again() requires. */
 size_t fmb_robot_moved(const struct fmb_robot_scene *scene);
 
 /* Poses the links and the bodies that they carry. Limits are not checked.

@@ -22,7 +22,7 @@ static bool needs_value(const struct joints *joints, size_t j)
     return joint->type != ROBOT_FIXED && !joint->mimic_name && !joints->given[j];
 }
 
-/* Whether the value of a joint, or of the one that it follows, is given. */
+/* Whether a joint has a given value, or follows a joint that has one. */
 static bool is_chosen(const struct joints *joints, size_t j)
 {
     const struct robot_joint *joint = &joints->robot->joints[j];
@@ -88,7 +88,7 @@ bool joints_check(const struct joints *joints)
     return !joints->refused;
 }
 
-/* Writes what separates a part from the one before it. */
+/* Writes the separator of the next part: *before at first, then a semicolon. */
 static void separate(const char **before, FILE *out)
 {
     fputs(*before, out);

@@ -19,7 +19,7 @@ struct joint_report {
 
 struct joints {
     const struct robot *robot;
-    double *value; /* [joint_count]; robot_home() unless given or that of a mimic joint */
+    double *value; /* [joint_count]; robot_home() if neither given nor of a mimic joint */
     /* Whether a value exceeds its limits by more than the slack, or is too large for an angle. If
      * so, robot_place() must not be called. */
     bool refused;
@@ -46,19 +46,19 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line);
  * without limits, or outside the limits. */
 bool joints_check(const struct joints *joints);
 
-/* Describes values that joints_check() accepts, in parts that a semicolon separates; before: what
- * stands before the first one, if there is any: joints that are not at 0 although no value is
+/* Describes values that joints_check() accepts: joints that are not at 0 although no value is
  * given, values outside the limits, values that seem to be in degrees, and mimic joints that do not
- * follow. */
+ * follow. Writes nothing if there are none. before: text before the first part; semicolons separate
+ * the parts. */
 void joints_describe(const struct joints *joints, const char *before, FILE *out);
 
 /* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
- * any order: one for each joint that moves and has no value in joints; optional are those of mimic
- * joints, "time", in seconds, and "label". Others are ignored. Memory holds one line. */
+ * any order: one for each joint that moves and has no value in joints. Columns of mimic joints,
+ * "time", in seconds, and "label" are optional; others are ignored. Memory holds one line. */
 struct joint_table {
     /* Of the current row. */
     bool has_time;
-    double time;                    /* not before that of the previous row */
+    double time;                    /* not before the time of the previous row */
     char label[QUERY_NAME_MAX + 1]; /* "label (t = 0.5)", "label", "t = 0.5" or "" */
     unsigned long line;             /* in the file, from 1 */
     char *place;                    /* the file and line, for messages */

@@ -1,12 +1,12 @@
 /* mesh_hull(). The hull of the selected points grows until it contains all points, as the engine
  * decides exactly. If a point is separated from it, the point that is farthest in the direction of
- * their gap is selected; if that one is selected already, the separated point. Rounding in this
+ * their gap is selected; if it is selected already, the separated point is. Rounding in this
  * search can only select points that are not vertices. At the end, and when there are too many,
  * selected points that are in the hull of the others are removed.
  *
  * mesh_hull_cover(). The point farthest from the hull of the selected points is selected next,
  * until the distance is within the excess. Each point has an upper bound of its distance. The hull
- * only grows, so bounds remain valid, and only those above the largest distance so far are
+ * only grows, so bounds remain valid, and only bounds above the largest distance so far are
  * computed again. */
 #include "mesh_hull.h"
 
@@ -41,8 +41,8 @@ static bool make_hull(struct growing *growing)
     return growing->status == FMB_OK;
 }
 
-/* Whether a point is outside the hull; false also on error. gap, unless NULL: receives that from
- * the hull to the point. */
+/* Whether a point is outside the hull; false also on error. gap: receives the gap from the hull to
+ * the point; NULL: not wanted. */
 static bool is_outside(struct growing *growing, size_t i, struct fmb_gap *gap)
 {
     struct fmb_body point;

@@ -4,8 +4,8 @@
 
 #include "fmb.h"
 
-/* Selects the vertices of the convex hull of points, exactly: each other point is in the hull of
- * the selected ones, and no selected one is in the hull of the others.
+/* Selects the vertices of the convex hull of points, exactly: every other point is in the hull
+ * of the selected points, and no selected point is in the hull of the other selected points.
  *
  * In:  point   [count][axis], count at least 1
  * Out: vertex  the selected points, in their order: at most FMB_HULL_VERTICES_MAX, or count
@@ -15,9 +15,9 @@
 enum fmb_status mesh_hull(const double (*point)[3], size_t count, double (*vertex)[3],
                           size_t *found);
 
-/* Selects few of the points, and a radius: no point is farther than *radius from the hull of the
- * selected ones, which is proven. So the hull with this radius contains the hull of all points, and
- * extends beyond it by at most *radius.
+/* Selects few of the points, and a radius: it is proven that no point is farther than *radius from
+ * the hull of the selected points. So the hull with this radius contains the hull of all points,
+ * and extends beyond it by at most *radius.
  *
  * In:  point    [count][axis], count at least 1
  *      most     the largest number of selected points, 1 to FMB_HULL_VERTICES_MAX

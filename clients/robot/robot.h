@@ -4,7 +4,7 @@
  * joints (joints.h).
  *
  * Errors are collected in a text, a line for each, which names the file, the line and the link or
- * joint: one run names all that is refused of a robot. */
+ * joint: one run reports all errors of a robot. */
 #ifndef ROBOT_H
 #define ROBOT_H
 
@@ -153,7 +153,7 @@ void robot_limit_length(double q[4]);
 void robot_place(const struct robot *robot, const struct pose *base, const double *value,
                  struct pose *pose);
 
-/* Reads count finite numbers, separated by white space. Returns false if the text is not that. */
+/* Reads count finite numbers, separated by white space. Returns false for any other text. */
 bool robot_numbers(const char *text, int count, double *out);
 
 #endif

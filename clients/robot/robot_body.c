@@ -282,7 +282,7 @@ static size_t count_bytes(const struct frames *frames, size_t most)
 }
 
 /* Reduces hulls of meshes so that the body fits into a message, if that is wanted and possible:
- * each to the same number of vertices, the largest with which it fits. Records radii. */
+ * all to the same number of vertices, the largest with which the body fits. Records radii. */
 static enum fmb_status fit_body(struct frames *frames)
 {
     size_t most = FMB_HULL_VERTICES_MAX, found;

@@ -16,9 +16,9 @@ struct robot_meshes {
     double excess; /* the largest radius of a hull */
 };
 
-/* Makes the body of a link that has at least one collision element. If it has only one, the origin
- * of the body is that of the element, and its numbers are those of the file. If it has several, the
- * origin is that of the link, and the numbers of elements with an origin are rounded.
+/* Makes the body of a link that has at least one collision element. If it has only one, the body
+ * has the origin of the element, and the numbers of the file. If it has several, the body has the
+ * origin of the link, and the numbers of elements with an origin are rounded.
  *
  * In:     options  valid; sides is not 0
  * In/out: scene    of dim 3; owns the body; its `outside` is raised

@@ -87,8 +87,8 @@ static bool carry(struct fmb_robot_scene *scene, const char *place,
     return true;
 }
 
-/* Adds the bodies of worlds that are carried, or those that are not. index: receives the index of
- * each body of the worlds in the scene. */
+/* Adds the carried bodies of worlds, or the bodies that no link carries. index: receives the index
+ * of each body of the worlds in the scene. */
 static bool add_bodies(struct fmb_robot_scene *scene, const struct fmb_robot_world *worlds,
                        size_t count, bool carried, unsigned *index)
 {
@@ -217,8 +217,8 @@ static void ignore_world(struct fmb_robot_scene *scene, const struct fmb_robot_w
     }
 }
 
-/* Adds the pairs of the robot, those of carried bodies and their links, and those of other bodies
- * and links whose collisions are disabled by default. */
+/* Adds the ignored pairs of the robot, the pairs of carried bodies and their links, and the pairs
+ * of other bodies and links whose collisions are disabled by default. */
 static void ignore_of_robot(struct fmb_robot_scene *scene)
 {
     const struct fmb_robot *robot = scene->robot;

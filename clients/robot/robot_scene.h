@@ -1,4 +1,4 @@
-/* The structs behind fmb_robot.h: a robot with its bodies, and scenes of a robot and the bodies
+/* The structs of fmb_robot.h: a robot with its bodies, and scenes of a robot and the bodies
  * around it, which can be posed any number of times. */
 #ifndef ROBOT_SCENE_H
 #define ROBOT_SCENE_H
@@ -48,7 +48,7 @@ struct fmb_robot {
     unsigned *body_of_link;       /* [link_count]; or ROBOT_NO_BODY */
     struct pose *origin;          /* [body_count], in the link */
     const char **link_names;      /* [body_count] */
-    unsigned *rigid; /* [body_count]: the first body of those that fixed joints connect to it */
+    unsigned *rigid; /* [body_count]: the first body that fixed joints connect to it, or itself */
     /* Ignored pairs, sorted. Without SRDF, pairs within a rigid body are ignored too, by groups. */
     struct robot_pairs ignored;
     const char *srdf;           /* its path; NULL: none */
