@@ -16,7 +16,7 @@
  *   overlap. A NaN, where the message types have one, has the bits 7ff8000000000000 (Java's NaN).
  *   Indices of frames are not negative, and 0 where a gap is NaN.
  * - A scene has as many named pairs, times, boxes, points and gaps as its verdicts require. Named
- *   pairs are in order; those that are separated have a gap. Unknown bodies are present if and only
+ *   pairs are in order; separated pairs have a gap. Unknown bodies are present if and only
  *   if the status is UNKNOWN_BODY. If the status is not OK, there are no answers.
  * - The bodies of a definition have frames, and match their handle. The frames are not checked.
  *

@@ -57,9 +57,9 @@ static inline void wire_write_text(struct writer *writer, const char *text)
 bool wire_is_point(const double *point, int count);
 
 /* Reads the lists of gaps: bounds, directions, witnesses, frames. There is a gap for each of count
- * verdicts, or for none. padded: as in scenes, a gap without witness points has NaN in their place;
- * otherwise the list of witnesses is then empty, and count is 1. *names_frames: whether frames are
- * present. Returns the dimension of the gaps; 0: there are none. */
+ * verdicts, or for none. padded: whether a gap without witness points has NaN in their place, as in
+ * scenes; if not, count is 1, and the list of witnesses is empty for such a gap. *names_frames:
+ * whether frames are present. Returns the dimension of the gaps; 0: there are none. */
 int wire_read_gaps(struct cursor *cursor, const unsigned char *verdict, int32_t count, bool padded,
                    bool *names_frames, struct fmb_gap *out);
 

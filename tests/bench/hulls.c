@@ -89,7 +89,7 @@ enum { VERTICES = 512 };
 struct draft {
     struct rings rings;
     int count;
-    double vertex[VERTICES][3]; /* body coordinates; those of a box too, or of a core */
+    double vertex[VERTICES][3]; /* body coordinates; of a hull, a box or a core */
     double turned[VERTICES][3]; /* by the orientation */
     double half[3], radius, orientation[4], position[3];
 };

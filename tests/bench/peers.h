@@ -18,7 +18,7 @@ struct peer_solid {
     int count; /* of vertices: 2^dim, or dim + 1 of a simplex */
     const double (
         *hull)[3];   /* [count]: its vertices, about centre; it has no others. NULL: no hull */
-    double radius;   /* of a sphere, a hull of one vertex, and a capsule, of two; else 0 */
+    double radius;   /* of a sphere (a hull of one vertex) or a capsule (of two); 0: none */
     const int *face; /* of a hull: the number of vertices of a face, their indices, the next face */
     int faces;
     double origin[3], component[3][3], vertex[8][3];

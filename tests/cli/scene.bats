@@ -358,7 +358,7 @@ EOF
     echo "$output" > output.txt
     run prove_cover
     is '1024 1.000000'
-    # One placed within its link, and those of two objects.
+    # A mesh that is placed within its link, and a mesh of two objects.
     sed -i "s|<collision>|$box<collision><origin xyz='0 0 1' rpy='0 0 1'/>|" robot.urdf
     scene robot.urdf
     shows '.bodies[0].frames[1] | (.vertices | length), .radius < 0.004'
@@ -876,7 +876,7 @@ f fixed left tip')"
     shows "$width"
     is 1
     cd ../../..
-    # By the name in package.xml, not that of a comment or of another package; the nearest one.
+    # The name in package.xml decides, not a name in a comment. The nearest folder is used.
     mv ws/arm ws/src
     refused 'package://arm/meshes/m.obj: not found: no folder above the robot is called arm, or has a package.xml with this name' ws/src/robots/robot.urdf
     for xml in '<package><!-- <name>no</name> --><name> arm </name></package>' $'<package format="2">\n<name>arm</name>'; do

@@ -7,7 +7,7 @@
 
 enum fmb_verdict frames_verdict(const struct pair *pair, unsigned i, unsigned j);
 
-/* The common points of both cores after a shift, all of them or only those near a point. */
+/* The common points of both cores after a shift, or only the common points near a point. */
 struct frames_part {
     rational_vector shift[2]; /* of the core of a, of that of b */
     bool near;                /* only points within these times and this box */

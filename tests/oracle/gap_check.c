@@ -308,7 +308,7 @@ static bool fail(char *why, size_t size, const char *what)
     return false;
 }
 
-/* Separated pairs have witness points, and so do those that overlap without relative motion. */
+/* Separated pairs have witness points, and so do overlapping pairs without relative motion. */
 static bool witness_is_due(const struct pair *pair, enum fmb_verdict verdict,
                            const struct fmb_gap *gap)
 {

@@ -1,10 +1,10 @@
 /* Method. The squared distance of two cores is convex in time. Frames meet before a time if they
  * overlap over the window up to it; or if they touch over that window, and did so before its end.
  * Let x be the shortest b - a of the cores over a part of the window, no longer than the sum R of
- * the radii r and s. The core of a moved by x r / R and that of b moved by -x s / R meet only in
- * points that both frames contain at a time of the least distance. If the frames touch, these are
- * all their common points: each is an a + x r / R, since no other b - a is as short as x. A linear
- * program (frames.h) finds the times and the box of these points. */
+ * the radii r and s. The core of a, moved by x r / R, and the core of b, moved by -x s / R, meet
+ * only in points that both frames contain at a time of the least distance. If the frames touch,
+ * these are all their common points: each is an a + x r / R, since no other b - a is as short as x.
+ * A linear program (frames.h) finds the times and the box of these points. */
 #include "rounded.h"
 
 #include <float.h>

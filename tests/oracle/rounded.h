@@ -13,8 +13,8 @@ const char *rounded_contact_fault(const struct pair *pair, const double contact[
 
 /* Returns what is wrong with a box, or NULL if
  *
- *   - it contains a sample of the points that the bodies have in common, which includes those of
- *     the cores, and the extreme points of a frame that are in the other frame;
+ *   - it contains a sample of the points that the bodies have in common, which includes the common
+ *     points of the cores, and the extreme points of a frame that are in the other frame;
  *   - it is within the smallest box that contains, for each pair of frames that meet, the
  *     intersection of the boxes of both frames over the contact, up to 1e-12 of the largest
  *     coordinate and of both reaches. This is checked only if the largest coordinate is at most

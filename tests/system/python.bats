@@ -28,7 +28,7 @@ setup() {
     PYTHONPATH=$BATS_TEST_TMPDIR run $python -c 'import fmb'
     [ "$status" = 1 ]
     [[ ${lines[-1]} == 'ImportError: fmb: '*'needs 0: install both'* ]]
-    # That of robots is loaded by its first use.
+    # The library for robots is loaded when it is first used.
     mkdir "$BATS_TEST_TMPDIR/libraries"
     cp "$FMB_BUILD"/libfmb.so.0 "$FMB_BUILD"/libfmb-client.so.0 "$BATS_TEST_TMPDIR/libraries"
     LD_LIBRARY_PATH=$BATS_TEST_TMPDIR/libraries run $python -c 'import fmb; fmb.Scene([fmb.box([1, 1])]); fmb.Robot("r.urdf")'

@@ -80,8 +80,8 @@ bool referee_same(const struct fmb_answer *one, const struct fmb_answer *other)
            (!one->has_point || memcmp(one->point, other->point, sizeof one->point) == 0);
 }
 
-/* On output: *answer, with the box and the point, held against the truth; the point, which takes
- * longest, by turns. */
+/* On output: *answer, with the box and the point, which agrees with the truth. The point, which
+ * takes longest, is compared in every 32nd call. */
 static void assert_truth(const struct never_wrong *method, const struct question *question,
                          const struct pair *pair, const struct oracle_answer *truth,
                          struct fmb_answer *answer)

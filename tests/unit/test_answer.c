@@ -428,7 +428,7 @@ static void bad_requests_are_refused(void **state)
     for (size_t i = 0; i < COUNT(durations); i++)
         REFUSED(query.duration = durations[i], FMB_BAD_DURATION, "duration: negative or not finite");
     REFUSED(query.method = 77, FMB_UNKNOWN_METHOD, "method: unknown method");
-    for (int bit = 5; bit < 31; bit++) /* those that have no name */
+    for (int bit = 5; bit < 31; bit++) /* bits without a name */
         REFUSED(query.want = FMB_WANT_BOX | 1 << bit, FMB_UNKNOWN_WANT, "want: wants what this version does not give");
     for (int method = 2; method <= 3; method++)
         REFUSED(query.want = FMB_WANT_GAP; query.method = method, FMB_CANNOT_DECIDE, "method: gives no gaps");

@@ -345,7 +345,7 @@ static void bounds_of_gaps_are_compared(void **state)
         }
 }
 
-/* Of bodies that overlap: the coordinates are those of the query. */
+/* Of bodies that overlap, so that only coordinates of the query count. */
 static void expect_scale(const struct pair_query *query, double scale)
 {
     struct pair_result then = {.dim = 3}, now;

@@ -367,7 +367,7 @@ static void hulls_of_too_many_vertices_are_refused(void **state)
     }
 }
 
-/* At most this many vertices, or this excess; the radius is tight. */
+/* Checks that a cover has at most this many vertices, or this excess, and a tight radius. */
 static void check_cover(size_t most, double excess)
 {
     static double vertex[FMB_HULL_VERTICES_MAX][3];

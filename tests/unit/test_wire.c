@@ -400,8 +400,8 @@ static void points_are_read_back(void **state)
         }
 }
 
-/* Witness points: separated pairs have them, those that overlap may, those that touch have none. In
- * scenes, NaN stands for none. */
+/* Separated pairs have witness points, overlapping pairs may have them, touching pairs have none.
+ * In scenes, NaN stands in place of missing points. */
 static void witness_points_depend_on_the_verdict(void **state)
 {
     static unsigned char bytes[QUERY_BYTES_MAX];
