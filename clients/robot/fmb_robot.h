@@ -222,8 +222,8 @@ struct fmb_robot_edge {
 
 /* Continues an edge.
  * Out: *out  the answer, if it returns 1
- * Returns 1 once, when the edge is complete; else 0. After that, fmb_robot_path_edge() begins the
- * next edge.
+ * Returns 1 if the edge is complete, and again at each later call; 0 if it is not complete, or if
+ * no edge was begun.
  * Cost: some 0.1 ms; O(pairs of frames) where the search for the first contact begins. */
 int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out);
 

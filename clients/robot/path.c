@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST, FIRST, DONE };
+enum { NONE, LEAST, FIRST, DONE }; /* NONE: there is no edge */
 
 enum {
     STEP_ENTRIES = 64, /* of a step */
@@ -431,7 +431,6 @@ int fmb_robot_path_begin(struct fmb_robot_scene *scene, double clearance,
     struct fmb_robot_path *path = *out = allocate(1, sizeof *path);
     const struct fmb_scene *bodies = &scene->owner.scene;
     path->scene = scene;
-    path->phase = DONE;
     path->wanted = clearance;
     if (!(clearance >= 0 && clearance < INFINITY))
         robot_say(&path->errors, "clearance: expected a finite number, 0 or more");
@@ -491,7 +490,7 @@ int path_set_edge(struct fmb_robot_path *path, const double *from, const double 
     const struct robot *tree = &path->scene->robot->tree;
     char text[2][NUMBER_TEXT_MAX];
     robot_lines_clear(&path->errors);
-    path->phase = DONE;
+    path->phase = NONE;
     for (size_t j = 0; j < tree->joint_count; j++) {
         const struct robot_joint *joint = &tree->joints[j];
         path->value[0][j] = joint->type == ROBOT_FIXED ? 0 : from[j];
@@ -550,10 +549,11 @@ int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const d
 
 int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out)
 {
-    for (int i = 0; i < STEP_ENTRIES && path->phase != DONE; i++)
-        if (take(path, out)) {
+    for (int i = 0; i < STEP_ENTRIES && (path->phase == LEAST || path->phase == FIRST); i++)
+        if (take(path, &path->answer))
             path->phase = DONE;
-            return 1;
-        }
-    return 0;
+    if (path->phase != DONE)
+        return 0;
+    *out = path->answer;
+    return 1;
 }

@@ -133,7 +133,8 @@ struct fmb_robot_path {
     struct path_entry *heap;
     size_t heap_count, heap_capacity;
     int phase;
-    double until; /* what is searched ends here: 1 but for path_prove_until() */
+    struct fmb_robot_edge answer; /* of an edge that is complete */
+    double until;                 /* what is searched ends here: 1 but for path_prove_until() */
     size_t work;
     double proven, closest, closest_at, hit;
     unsigned closest_pair[2], hit_pair[2];

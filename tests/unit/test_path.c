@@ -361,6 +361,30 @@ static void an_edge_can_be_abandoned(void **state)
     clear_world(&world);
 }
 
+static void a_complete_edge_keeps_its_answer(void **state)
+{
+    struct world world;
+    struct fmb_robot_path *path;
+    struct fmb_robot_edge edge, again;
+    make_arm(&world, "prismatic", 0.25, 0, 1);
+    assert_int_equal(fmb_robot_path_begin(world.scene, 0, &path), 0);
+    assert_int_equal(fmb_robot_path_edge(path, world.q[0], world.q[1]), 0);
+    while (!fmb_robot_path_step(path, &edge))
+        ;
+    for (int i = 0; i < 2; i++) {
+        again = (struct fmb_robot_edge){.clearance = -1};
+        assert_int_equal(fmb_robot_path_step(path, &again), 1);
+        assert_true(again.verdict == FMB_ROBOT_CONTACT && again.at[0] == edge.at[0] &&
+                    again.at[1] == edge.at[1] && again.clearance == edge.clearance &&
+                    again.closest == edge.closest && again.a == edge.a && again.b == edge.b);
+    }
+    world.q[1][0] = NAN;
+    assert_int_equal(fmb_robot_path_edge(path, world.q[0], world.q[1]), -1);
+    assert_int_equal(fmb_robot_path_step(path, &again), 0);
+    fmb_robot_path_free(path);
+    clear_world(&world);
+}
+
 static void bad_edges_and_worlds_are_refused(void **state)
 {
     struct world world;
@@ -402,6 +426,7 @@ int main(void)
         cmocka_unit_test(a_known_contact_is_enclosed),
         cmocka_unit_test(resting_links_are_undecided),
         cmocka_unit_test(an_edge_can_be_abandoned),
+        cmocka_unit_test(a_complete_edge_keeps_its_answer),
         cmocka_unit_test(bad_edges_and_worlds_are_refused),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
