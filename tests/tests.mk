@@ -25,7 +25,8 @@ see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/repla
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
 see_tests/unit := $(call fmb,number frame filter article tree limbs gap support certificate decide) service clients \
-	$(see_clients) tests/encode tests/oracle tests/replay tests/campaign tests/checked tests/hostile tests/mesh $(GEN)
+	$(see_clients) tests/encode tests/oracle tests/replay tests/campaign tests/checked tests/hostile tests/mesh \
+	tests/path $(GEN)
 
 # ---- Programs of tests and measurements: the name, and the main file in tests/ ----
 
@@ -44,7 +45,7 @@ measures := $(call program_names,$(measures)) $(B)/accuracy-planted
 
 # What the programs of tests share, and what benchmarks and unit tests, which need cmocka, share besides.
 # Programs that look into the engine link its objects, the others the library.
-test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh soak logs replay)
+test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh path soak logs replay)
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders)))
 units := $(O)/units.a

@@ -5,7 +5,7 @@
 
 #include "draw.h"
 #include "fmb_robot.h"
-#include "path.h"
+#include "wrong_bounds.h"
 
 #include <math.h>
 #include <unistd.h>
@@ -18,26 +18,7 @@ static int setup(void **state)
     return 0;
 }
 
-/* ---- Bounds that are too small ----------------------------------------------------------------
- */
-
-static double speed_factor = 1, curve_factor = 1;
-
-void __real_path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain, unsigned a,
-                           unsigned b, struct path_bounds *out);
-void __wrap_path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain, unsigned a,
-                           unsigned b, struct path_bounds *out);
-void __wrap_path_bounds_of(struct fmb_robot_path *path, const struct path_chain *chain, unsigned a,
-                           unsigned b, struct path_bounds *out)
-{
-    __real_path_bounds_of(path, chain, a, b, out);
-    out->speed *= speed_factor;
-    for (int i = 0; i < 3; i++)
-        out->curve[i] *= curve_factor;
-}
-
-/* ---- Robots -----------------------------------------------------------------------------------
- */
+/* ---- Robots ---- */
 
 static struct fmb_robot *read_text(const char *text)
 {
@@ -174,8 +155,7 @@ static void draw_world(struct world *world, int links, bool branches, double ste
     }
 }
 
-/* ---- Sampled poses ----------------------------------------------------------------------------
- */
+/* ---- Sampled poses ---- */
 
 /* Returns the least gap at a time of the edge. */
 static double sampled_gap(const struct world *world, double s)
@@ -255,8 +235,7 @@ static void sampled_poses_agree_with_every_verdict(void **state)
         assert_true(count[verdict] >= draw_sample(20));
 }
 
-/* ---- A ball on an arm, for which bounds are tight ----------------------------------------------
- */
+/* ---- A ball on an arm, for which bounds are tight ---- */
 
 /* A ball of radius 0.1 at a distance of 1 from a turning joint, or on a sliding one, along x; and a
  * box, whose face is at x = 1.1 + gap. */
@@ -283,8 +262,8 @@ static void halved_bounds_are_found(void **state)
 {
     int wrong[3] = {0, 0, 0};
     for (int fault = 0; fault < 3; fault++) {
-        speed_factor = fault == 1 ? 0.5 : 1;
-        curve_factor = fault == 2 ? 0.5 : 1;
+        wrong_speed = fault == 1 ? 0.5 : 1;
+        wrong_curve = fault == 2 ? 0.5 : 1;
         for (int i = 1; i < 40; i++) {
             struct world world;
             if (i % 2)
@@ -296,7 +275,7 @@ static void halved_bounds_are_found(void **state)
             clear_world(&world);
         }
     }
-    speed_factor = curve_factor = 1;
+    wrong_speed = wrong_curve = 1;
     assert_int_equal(wrong[0], 0);
     assert_true(wrong[1] > 0);
     assert_true(wrong[2] > 0);
