@@ -125,22 +125,13 @@ static void write_frame(struct line *line, const struct fmb_frame *frame)
 {
     double numbers[3 * FMB_HULL_VERTICES_MAX];
     bool by_vertices;
-    size_t count = fmb_frame_numbers(frame, &by_vertices, numbers) / 3;
-    if (frame->shape == FMB_BOX) { /* a cuboid */
-        for (int i = 0; i < 3; i++) {
-            const double size = numbers[3 + i];
-            numbers[i] -= size / 2;
-            for (int c = 0; c < 3; c++)
-                numbers[3 + 3 * c + i] = i == c ? size : 0;
-        }
-        count = 4;
-    }
+    const size_t count = fmb_frame_numbers(frame, &by_vertices, numbers) / 3;
+    const char *const kind = frame->shape == FMB_HULL || by_vertices ? "hull"
+                             : frame->shape == FMB_BOX               ? "box"
+                             : frame->shape == FMB_CUBOID            ? "cuboid"
+                                                                     : "simplex";
     json_begin(&line->json, NULL, '{');
-    json_begin(&line->json,
-               frame->shape == FMB_HULL || by_vertices                 ? "hull"
-               : frame->shape == FMB_BOX || frame->shape == FMB_CUBOID ? "cuboid"
-                                                                       : "simplex",
-               '[');
+    json_begin(&line->json, kind, '[');
     for (size_t i = 0; i < count; i++)
         write_vector(line, NULL, numbers + 3 * i, 3);
     json_end(&line->json, ']');

@@ -234,6 +234,25 @@ refused() {
     [ "$(cat other)" = mine ]
 }
 
+@test "a proof has the numbers of each shape without rounding" {
+    echo '{"dim": 3, "bodies": [{"id": 9, "frames": [
+        {"shape": "box", "size": [0.3,0.1,0.7], "position": [0.1,0.2,0.3]}, {"shape": "sphere", "radius": 0.1},
+        {"shape": "cuboid", "origin": [0.1,0,0], "components": [[0.3,1,0],[0,1,0],[0,0,1]]},
+        {"shape": "face", "origin": [0.1,0,0], "components": [[1,0,0],[0,1,0]], "radius": 0.5},
+        {"shape": "hull", "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,0.7]]}], "position": [5,0,0]}]}' > world.json
+    rows 0,0 1,0
+    path --proof proof
+    ended 0
+    run --separate-stderr bash -c "gunzip < proof | jq -c 'select(.link == -1) | .frames[]'"
+    is '{"box":["0x1.999999999999ap-4 0x1.999999999999ap-3 0x1.3333333333333p-2","0x1.3333333333333p-2 0x1.999999999999ap-4 0x1.6666666666666p-1"]}
+{"hull":["0x0p+0 0x0p+0 0x0p+0"],"radius":"0x1.999999999999ap-4"}
+{"cuboid":["0x1.999999999999ap-4 0x0p+0 0x0p+0","0x1.3333333333333p-2 0x1p+0 0x0p+0","0x0p+0 0x1p+0 0x0p+0","0x0p+0 0x0p+0 0x1p+0"]}
+{"simplex":["0x1.999999999999ap-4 0x0p+0 0x0p+0","0x1p+0 0x0p+0 0x0p+0","0x0p+0 0x1p+0 0x0p+0"],"radius":"0x1p-1"}
+{"hull":["0x0p+0 0x0p+0 0x0p+0","0x1p+0 0x0p+0 0x0p+0","0x0p+0 0x1p+0 0x0p+0","0x0p+0 0x0p+0 0x1.6666666666666p-1"]}'
+    run /usr/bin/python3 -S "$DEMO/../../robot/fmb-check-path" proof
+    ended 0
+}
+
 @test "fmb-check-path accepts proofs, but not those of bounds that are halved" {
     check="/usr/bin/python3 -S $(dirname "$DEMO")/../robot/fmb-check-path"
     # A ball at a distance of 1 from a joint, and a wall that it comes near in the middle.

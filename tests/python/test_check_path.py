@@ -43,10 +43,14 @@ def ball(name, link, at=(0, 0, 0), radius=0.1, **others):
 
 
 def box(name, link, at, size, **others):
-    """at: of its middle."""
+    return {"body": name, "link": link, "frames": [{"box": [hexed(*at), hexed(*size)]}]} | others
+
+
+def cuboid(name, link, at, size):
+    """The same body as a box."""
     sides = [[size[i] if i == j else 0 for j in range(3)] for i in range(3)]
     corner = [x - y / 2 for x, y in zip(at, size)]
-    return {"body": name, "link": link, "frames": [{"cuboid": [hexed(*v) for v in [corner] + sides]}]} | others
+    return {"body": name, "link": link, "frames": [{"cuboid": [hexed(*v) for v in [corner] + sides]}]}
 
 
 def question(links, joints, bodies, rows, ignored=(), **base):
@@ -145,7 +149,7 @@ def slide():
     """A box on an oblique rail passes the edge of another one."""
     return question(2, [joint("prismatic", 0, 1, axis=(3, 4, 0), column=0)],
                     [box("cart", 1, (0, 0, 0), (0.5, 0.5, 0.5)),
-                     box("post", -1, (0.6 + 0.25, 0.8 + 0.25, 0.3 + 0.25), (0.5, 0.5, 0.5))],
+                     cuboid("post", -1, (0.6 + 0.25, 0.8 + 0.25, 0.3 + 0.25), (0.5, 0.5, 0.5))],
                     [(-1,), (2,)]), 0.3 - 0.25
 
 
@@ -374,7 +378,8 @@ class Faults(unittest.TestCase):
                 ((body[0], "link"), [None, 5, -2, -1, 1 << 64]), ((body[5], "link"), [0]),
                 ((body[0], "frames"), [None, [], [{}], 7, [{"hull": []}], [{"cone": [hexed(0, 0, 0)]}], [{"hull": [hexed(0, 0)]}],
                                        [{"hull": [hexed(0, 0, 0)], "radius": hexed(-1)}], [{"hull": ["nan nan nan"]}],
-                                       [{"cuboid": [hexed(0, 0, 0)] * 5}], [{"hull": [hexed(1, 0, 0)], "simplex": [hexed(0, 0, 0)]}]]),
+                                       [{"cuboid": [hexed(0, 0, 0)] * 5}], [{"box": [hexed(0, 0, 0)]}], [{"box": [hexed(0, 0, 0)] * 3}],
+                                       [{"hull": [hexed(1, 0, 0)], "simplex": [hexed(0, 0, 0)]}]]),
                 ((row, "row"), [None, hexed(0), hexed(0, 0, 0), hexed(0, 1 << 21), "0x1p+9999 0x0p+0", "0x1p+1024 0x0p+0", "nan inf"]),
                 ((ignored, "ignored"), [None, 5, [5], [[[0], 1]]]), ((edge, "to"), [None, 1, hexed(-1), "nan"]),
                 ((pair, "proof"), [None, 7, [7], [[]], [["S"]], [["X", 0]], [["S", -1]], [["S", 61]], [["S", 1 << 70]], [["S", "0"]],
@@ -637,8 +642,7 @@ def element(frame, line):
     at = f'<origin xyz="{decimal(line)}"/>' if line else ""
     if "radius" in frame:
         return f'<collision>{at}<geometry><sphere radius="{decimal(frame["radius"])}"/></geometry></collision>'
-    size = " ".join(repr(numbers(side)[i]) for i, side in enumerate(frame["cuboid"][1:]))
-    return f'<collision>{at}<geometry><box size="{size}"/></geometry></collision>'
+    return f'<collision>{at}<geometry><box size="{decimal(frame["box"][1])}"/></geometry></collision>'
 
 
 def write_urdf(folder, lines):
