@@ -159,7 +159,7 @@ struct fmb_client_counts {
     uint64_t malformed;        /* results that could not be decoded, or did not match their query */
     uint64_t unsent;           /* queries that could not be sent */
     uint64_t outages;          /* times that the service stopped answering */
-    uint64_t bytes;            /* of queries sent */
+    uint64_t bytes;            /* of queries sent, repeats counted */
     uint64_t whole, by_handle; /* placements sent with frames, and with a handle */
 };
 
