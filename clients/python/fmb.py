@@ -54,9 +54,9 @@ except ImportError:
 if TYPE_CHECKING:
     Array = Union["numpy.ndarray", memoryview, Sequence[Any]]
 
-__all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Error", "OVERLAPPING", "SEPARATED",
-           "Robot", "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid", "cylinder", "face",
-           "hull", "sphere", "status_text", "tetrahedron", "version"]
+__all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Edge", "Error", "OVERLAPPING", "Path",
+           "SEPARATED", "Robot", "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid",
+           "cylinder", "face", "hull", "sphere", "status_text", "tetrahedron", "version"]
 
 # ---- The libraries: fmb_flat.h, fmb_robot.h, and structs of fmb.h ----
 
@@ -85,6 +85,10 @@ _Placed = _struct(
 _World = _struct("fmb_robot_world", ("scene", ctypes.POINTER(_Placed)), ("links", ctypes.POINTER(_TEXT)), ("name", _TEXT))
 _Options = _struct("fmb_robot_options", ("srdf", _TEXT), ("package_path", _TEXT), ("base", _REAL * 6), ("sides", _INT),
                    ("excess", _REAL), ("objects", _INT), ("bus", _INT))
+
+_Touch = _struct("fmb_robot_touch", ("a", _UNSIGNED), ("b", _UNSIGNED), ("verdict", _INT))
+_Edge = _struct("fmb_robot_edge", ("verdict", _INT), ("at", _REAL * 2), ("clearance", _REAL), ("closest", _REAL),
+                ("has_pair", ctypes.c_bool), ("a", _SIZE), ("b", _SIZE))
 
 _ClientOptions = _struct("fmb_client_options", ("url", _TEXT), ("prefix", _TEXT), ("timeout", _REAL), ("tries", _INT),
                          ("within", _REAL))
@@ -130,7 +134,15 @@ def _robots() -> ctypes.CDLL:
         ("fmb_robot_scene_why", _TEXT, _POINTER),
         ("fmb_robot_scene_get", ctypes.POINTER(_Placed), _POINTER),
         ("fmb_robot_moved", _SIZE, _POINTER),
-        ("fmb_robot_place", _INT, _POINTER, _POINTER))
+        ("fmb_robot_place", _INT, _POINTER, _POINTER),
+        ("fmb_robot_path_begin", _INT, _POINTER, _REAL, _POINTER),
+        ("fmb_robot_path_free", None, _POINTER),
+        ("fmb_robot_path_why", _TEXT, _POINTER),
+        ("fmb_robot_path_pairs", _SIZE, _POINTER),
+        ("fmb_robot_path_touches", _SIZE, _POINTER, _POINTER),
+        ("fmb_robot_path_edge", _INT, _POINTER, _POINTER, _POINTER),
+        ("fmb_robot_path_lever", _REAL, _POINTER),
+        ("fmb_robot_path_step", _INT, _POINTER, _POINTER))
 
 
 _lib = _load(
@@ -604,6 +616,46 @@ class Answer(NamedTuple):
     time: Optional[float]  #: of the witness points, seconds; None if the gap has none
     witness: Optional[tuple[Vector, Vector]]  #: the nearest or deepest points of a and b
     frames: Optional[tuple[int, int]]  #: indices of the frames of a and b that have this gap
+
+
+_EDGE_VERDICTS = (None, "free", "near", "contact", "undecided")
+
+
+class Edge(NamedTuple):
+    """What was found on one edge of a path, the way from one row to the next."""
+
+    #: "free": all pairs are at least `clearance` apart at all times; "near": no contact, but not the clearance that
+    #: was asked for; "contact"; "undecided": neither could be proven
+    verdict: str
+    #: Fractions of the edge, 0 to 1. Contact: the first is between these; undecided: before these, the edge is
+    #: free; near: of `closest`; free: the whole edge
+    at: tuple[float, float]
+    clearance: float  #: proven lower bound of the least gap, if free or near; else 0. Infinite if there are no pairs
+    closest: float  #: upper bound of the least gap: the least one that was found
+    pair: Optional[tuple[int, int]]  #: indices in the scene: of the contact, or of `closest`
+    names: Optional[tuple[Optional[str], Optional[str]]]  #: of this pair
+
+
+class Path(tuple):
+    """The answers for a path: a tuple of Edge. edge[k] is the way from row k to row k + 1.
+
+    verdict: "contact" if an edge has one, else "near", else "undecided", else "free"
+    clearance: proven of the whole path; 0 if there is a contact, or an edge is undecided
+    joint_error: if all joints are off by less, radians or lengths, the path is free nevertheless
+    pairs: number of pairs of bodies that were tested on each edge
+    touches: (a, b, verdict) of pairs that meet and do not move relative to each other. Those that
+        overlap are a contact on the whole path
+    names: of all bodies, by index
+    """
+
+    def __new__(cls, edges: Iterable[Edge], touches: Iterable[Any], scene: Scene, pairs: int, lever: float) -> Path:
+        self = super().__new__(cls, edges)
+        self.touches, self.pairs, self.names = tuple(touches), pairs, scene.names
+        found = {edge.verdict for edge in self} | {"contact" for touch in self.touches if touch[2] is OVERLAPPING}
+        self.verdict = next(verdict for verdict in ("contact", "near", "undecided", "free") if verdict in found)
+        self.clearance = 0.0 if found & {"contact", "undecided"} else min(edge.clearance for edge in self)
+        self.joint_error = self.clearance / lever if lever else math.inf
+        return self
 
 
 class Rows(Sequence):
@@ -1115,3 +1167,55 @@ class Robot(_Handle):
             if self._lib.fmb_robot_place(made._handle, values):
                 raise Error("q: " + made.why())
             _lib.fmb_flat_take(scene._handle, placements, moved)
+
+    def check_path(self, rows: Any, world: Optional[Scene] = None, clearance: Optional[float] = None) -> Path:
+        """Proves that the robot meets nothing on its way from each row to the next, at all times. Between
+        rows, the value of each joint changes linearly. clients/robot/PATHS.md says what is proven.
+
+        rows: (n, len(joints)), values of the joints; or a table or dict with a column for each of them,
+            by name. Limits are not checked. A path of one row is one pose
+        world: as for scene(); its bodies must be at rest
+        clearance: to be proven; None: the margin of the world. 0: none, and the clearance of each edge is found
+            to within a tenth
+        """
+        values = self._rows(rows)
+        scene = self.scene(world)
+        wanted = scene.margin if clearance is None else _float("clearance", clearance)
+        made = _Made("fmb_robot_path", "_begin", scene._robot[1]._handle, wanted, keeps=scene)
+
+        def begin(k: int) -> None:
+            to = min(k + 1, len(values) - 1)
+            if self._lib.fmb_robot_path_edge(made._handle, values[k], values[to]):
+                raise Error(f"rows[{to}]: {made.why()}")
+
+        def edge(k: int) -> Edge:
+            found = _Edge()
+            begin(k)
+            while not self._lib.fmb_robot_path_step(made._handle, ctypes.byref(found)):
+                pass  # each step is short, so that other threads and signals are not kept waiting
+            pair = (found.a, found.b) if found.has_pair else None
+            return Edge(_EDGE_VERDICTS[found.verdict], tuple(found.at), found.clearance, found.closest, pair,
+                        pair and tuple(scene.names[i] for i in pair))
+
+        edges = range(max(1, len(values) - 1))
+        for k in edges:  # errors come before the work
+            begin(k)
+        touches = ctypes.POINTER(_Touch)()
+        count = self._lib.fmb_robot_path_touches(made._handle, ctypes.byref(touches))
+        return Path(map(edge, edges), ((t.a, t.b, _VERDICTS[t.verdict]) for t in touches[:count]), scene,
+                    self._lib.fmb_robot_path_pairs(made._handle), self._lib.fmb_robot_path_lever(made._handle))
+
+    def _rows(self, rows: Any) -> list[Any]:
+        width = len(self.joints)
+        if hasattr(rows, "keys"):
+            missing = [name for name in self.joints if name not in rows.keys()]
+            if missing:
+                raise ValueError(f"rows: no column for {', '.join(missing)}")
+            columns = [_flat(f"rows[{name!r}]", rows[name], "d", ("n",))[0].tolist() for name in self.joints]
+            if len(set(map(len, columns))) > 1:
+                raise ValueError("rows: the columns have different lengths")
+            rows = list(zip(*columns))
+        values = _flat("rows", rows, "d", ("n", width))[0].tolist()
+        if not values:
+            raise ValueError("rows: expected at least one")
+        return [(_REAL * width)(*row) for row in values]

@@ -852,6 +852,41 @@ class Robots(unittest.TestCase):
         self.assertTrue(in_child(lambda: list(scene.decide(0)) == list(fresh.decide(0))))
         self.assertTrue(in_child(lambda: robot.place(scene, robot.home) is None))
 
+    def test_paths_are_those_of_fmb_path(self):
+        with open(DEMO + "path.csv") as table:
+            columns = dict(zip(("time", "label", "waist", "lift", "elbow", "wrist"),
+                               zip(*(line.split(",") for line in table.read().splitlines()[1:]))))
+        columns = {name: list(map(float, values)) for name, values in columns.items() if name != "label"}
+        robot = fmb.Robot(DEMO + "robot.urdf")
+        rows = list(zip(*(columns[name] for name in robot.joints)))
+        bare, world = robot.scene(), fmb.Scene.from_json(DEMO + "world.json")
+        verdicts = set()
+        for clearance in (None, 0, 0.25):
+            command = [os.environ["FMB"], "path", DEMO + "robot.urdf", "--joints-csv", DEMO + "path.csv", "--json",
+                       "--with", DEMO + "world.json"] + ([] if clearance is None else ["--clearance", str(clearance)])
+            lines = subprocess.run(command, text=True, capture_output=True).stdout.splitlines()
+            rigid, *edges, whole = map(json.loads, lines)
+            path = robot.check_path(rows, world, clearance=clearance)
+            self.assertEqual(tuple(robot.check_path(columns, world, clearance=clearance)), tuple(path))
+            self.assertEqual((path.verdict, len(path), path.pairs), (whole["path"], whole["edges"], whole["pairs"]))
+            self.assertEqual((path.clearance, path.joint_error), (whole.get("clearance", 0), whole.get("joint_error", 0)))
+            (a, b, verdict), = path.touches
+            self.assertEqual(([path.names[a], path.names[b]], verdict), (rigid["names"], rigid["rigid"]))
+            for edge, line in zip(path, edges, strict=True):
+                self.assertEqual((edge.verdict, list(edge.at), edge.clearance, edge.closest, list(edge.names)),
+                                 (line["verdict"], line.get("at", [0, 1]), line.get("clearance", 0), line["closest"], line["names"]))
+                self.assertEqual(edge.names, tuple(path.names[i] for i in edge.pair))
+                verdicts.add(edge.verdict)
+        self.assertEqual(verdicts, {"free", "near", "contact"})
+        # One pose; and no pair at all.
+        pose = robot.check_path(rows[:1], world)
+        self.assertEqual((len(pose), pose.verdict), (1, "free"))
+        alone = fmb.Robot(self.file("one.urdf", """<robot name="one"><link name="a"/><link name="b"><collision><geometry>
+            <sphere radius="1"/></geometry></collision></link><joint name="j" type="continuous"><parent link="a"/>
+            <child link="b"/></joint></robot>""")).check_path([[0], [1]])
+        self.assertEqual((alone.verdict, alone.clearance, alone.joint_error, alone[0].pair), ("free", math.inf, math.inf, None))
+        self.assertEqual(list(robot.scene().decide(0)), list(bare.decide(0)))
+
     def test_ignored_pairs_belong_to_a_scene(self):
         cube = fmb.box([1, 1, 1])
         scene = fmb.Scene([cube] * 4, ignored=[(0, 1), (3, 2)])
@@ -873,7 +908,21 @@ class Robots(unittest.TestCase):
         other = fmb.Robot(self.urdf).scene()
         carried = fmb.Scene.from_json(self.file("w.json", json.dumps({"dim": 3, "bodies": [
             {"id": 1, "shape": "sphere", "radius": 1, "link": "hand"}]})))
+        moving = fmb.Scene([fmb.box([1, 1, 1])], velocities=[[0, 0, 1]])
         for error, start, call in (
+                (ValueError, "rows: expected at least one", lambda: robot.check_path([])),
+                (ValueError, "rows: expected at least one", lambda: robot.check_path({"turn": [], "slide": []})),
+                (ValueError, "rows[0]: expected 2 numbers, found 3", lambda: robot.check_path([[0, 0, 0]])),
+                (ValueError, "rows: no column for slide", lambda: robot.check_path({"turn": [0], "end": [0]})),
+                (ValueError, "rows: the columns have different lengths", lambda: robot.check_path({"turn": [0], "slide": [0, 1]})),
+                (TypeError, "rows['slide']: ", lambda: robot.check_path({"turn": [0], "slide": ["a"]})),
+                (TypeError, "rows: ", lambda: robot.check_path(None)),
+                (fmb.Error, "rows[2]: joint 'turn': its value is not finite", lambda: robot.check_path([[0, 1], [0, 2], [nan, 0]])),
+                (fmb.Error, "rows[1]: joint 'turn' turns from 0 to 4, by more than pi", lambda: robot.check_path([[0, 1], [4, 2]])),
+                (fmb.Error, "body ", lambda: robot.check_path([[0, 1]], moving)),
+                (TypeError, "world: ", lambda: robot.check_path([[0, 1]], "w.json")),
+                (fmb.Error, "clearance: ", lambda: robot.check_path([[0, 1]], clearance=-1)),
+                (TypeError, "clearance: ", lambda: robot.check_path([[0, 1]], clearance="1")),
                 (ValueError, "q: expected shape (2,), found (3,)", lambda: robot.place(scene, [0, 0, 0])),
                 (ValueError, "q: expected shape (2,), found (1, 2)", lambda: robot.place(scene, memoryview(array("d", [0, 0])).cast("B").cast("d", (1, 2)))),
                 (TypeError, "q: ", lambda: robot.place(scene, [[0, 0]])),

@@ -49,7 +49,7 @@ setup() {
     [ "$(wc -l < "$BATS_TEST_TMPDIR/numbers")" = 9 ]
     $python - >> "$BATS_TEST_TMPDIR/numbers" << 'END'
 import ctypes, fmb
-for struct in (fmb._BodyBegin, fmb._Placement, fmb._Placed, fmb._World, fmb._Options, fmb._ClientOptions):
+for struct in (fmb._BodyBegin, fmb._Placement, fmb._Placed, fmb._World, fmb._Options, fmb._Touch, fmb._Edge, fmb._ClientOptions):
     name = "struct " + struct.__name__
     for field, _ in struct._fields_:
         print(f'_Static_assert(offsetof({name}, {field}) == {getattr(struct, field).offset}, "{name} {field}");')
