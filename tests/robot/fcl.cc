@@ -3,6 +3,7 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/fcl.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
 #include <utility>
@@ -34,11 +35,12 @@ std::shared_ptr<fcl::CollisionGeometryd> tetrahedron(const fmb_frame &frame)
     return std::make_shared<fcl::Convexd>(vertices, 4, faces);
 }
 
-/* Rings of a link or of an obstacle: their faces are known. */
+/* Rings, whose faces are known. */
 std::shared_ptr<fcl::CollisionGeometryd> hull(const fmb_frame &frame)
 {
-    const rings rings =
-        robot_rings[int(frame.vertex_count) == rings_vertices(robot_rings[0]) ? 0 : 1];
+    const rings rings = *std::find_if(robot_rings, robot_rings + ROBOT_RINGS, [&](auto some) {
+        return int(frame.vertex_count) == rings_vertices(some);
+    });
     int count;
     auto faces = std::make_shared<std::vector<int>>(rings_faces(rings, nullptr, &count));
     rings_faces(rings, faces->data(), &count);
@@ -126,7 +128,7 @@ struct fcl_robot *fcl_robot_create(const struct robot *states)
 {
     auto *out = new fcl_robot;
     out->states = states;
-    const int bodies = states->links + ROBOT_OBSTACLES;
+    const int bodies = states->links + states->obstacles;
     for (int body = 0; body < bodies; body++)
         for (unsigned i = 0; i < states->body[body].frame_count; i++)
             add(out, body, *fmb_body_frame(&states->body[body], i));

@@ -1,6 +1,7 @@
 /* States of a robot a second: in process, as bodies, where all are placed anew or only the links,
- * and as single frames; and in FCL. */
+ * and as single frames; and in FCL. Then edges of paths. */
 #include "fcl.h"
+#include "paths.h"
 #include "stopwatch.h"
 
 #include <math.h>
@@ -192,7 +193,17 @@ static void report_bodies(struct in_process *in)
     report(&(struct way){"bodies with poses, only the links moved", decide_again, &standing});
 }
 
-int main(void)
+static void report_fcl(const struct robot *robot)
+{
+    struct fcl_robot *fcl = fcl_robot_create(robot);
+    if (fcl)
+        report(&(struct way){"FCL, dynamic AABB trees", decide_fcl, fcl});
+    else
+        puts("FCL: not installed (make deps-bench)");
+    fcl_robot_destroy(fcl);
+}
+
+static void run_states(void)
 {
     struct robot *robot = or_end(malloc(sizeof *robot));
     robot_draw(robot);
@@ -205,28 +216,31 @@ int main(void)
     corners.in.limits.ignored = corners.ignored_count;
     corners.in.memory = or_end(malloc(fmb_scene_bytes(&corners.in.limits)));
     corners.body = or_end(calloc(1, sizeof *corners.body));
-    struct fcl_robot *fcl = fcl_robot_create(robot);
-    stopwatch_pin();
     report_bodies(&bodies);
     report(&(struct way){"every frame a body, corners by the user", decide_corners, &corners});
-    if (fcl)
-        report(&(struct way){"FCL, dynamic AABB trees", decide_fcl, fcl});
-    else
-        puts("FCL: not installed (make deps-bench)");
-    fcl_robot_destroy(fcl);
+    report_fcl(robot);
 
-    robot_draw_hulls(robot);
-    fcl = fcl_robot_create(robot); /* fewer bodies than before: the memory suffices */
+    robot_draw_hulls(robot); /* fewer bodies than before: the memory suffices */
     printf("Hulls: %d links of %d vertices, %d obstacles of %d\n", robot->links,
-           rings_vertices(robot_rings[0]), ROBOT_OBSTACLES, rings_vertices(robot_rings[1]));
+           rings_vertices(robot_rings[ROBOT_RINGS_LINK]), robot->obstacles,
+           rings_vertices(robot_rings[ROBOT_RINGS_OBSTACLE]));
     report_bodies(&bodies);
-    if (fcl)
-        report(&(struct way){"FCL, dynamic AABB trees", decide_fcl, fcl});
-    fcl_robot_destroy(fcl);
+    report_fcl(robot);
     free(corners.body);
     free(corners.in.memory);
     free(corners.ignored);
     free(bodies.memory);
     free(robot);
+}
+
+/* robot [states | paths] */
+int main(int argc, char **argv)
+{
+    const char *section = argc > 1 ? argv[1] : "";
+    stopwatch_pin();
+    if (strcmp(section, "paths") != 0)
+        run_states();
+    if (strcmp(section, "states") != 0)
+        paths_run();
     return EXIT_SUCCESS;
 }
