@@ -217,14 +217,16 @@ static int list_directions(const struct fmb_robot_path *path, const struct path_
 
 /* ---- Phases ---- */
 
-/* Enters a pair, for the whole edge or for what is searched of it, in intervals. */
+/* Enters a pair, for the whole edge or for what is searched of it, in intervals. Its bounds are
+ * computed when they are needed: few entries of a large world are. */
 static void enter_pair(struct fmb_robot_path *path, const struct path_family *family, unsigned b,
                        double bound)
 {
     double low = 0;
     path->live =
         allocate_grow(path->live, &path->live_capacity, path->live_count + 1, sizeof *path->live);
-    path_bounds_of(path, &family->chain, family->a, b, &path->live[path->live_count]);
+    path->live[path->live_count] =
+        (struct path_bounds){.a = family->a, .b = b, .chain = &family->chain, .speed = NAN};
     for (int level = 0; low < path->until; level++)
         if (low + ldexp(1, -level) <= path->until) {
             push(path, (struct path_entry){path->phase == LEAST ? bound : low, low,
@@ -290,13 +292,22 @@ static void enter_pairs(struct fmb_robot_path *path)
     }
 }
 
+static const struct path_bounds *bounds_of(struct fmb_robot_path *path,
+                                           const struct path_entry *entry)
+{
+    struct path_bounds *bounds = &path->live[entry->bounds];
+    if (isnan(bounds->speed))
+        path_bounds_of(path, bounds->chain, bounds->a, bounds->b, bounds);
+    return bounds;
+}
+
 static void begin_first(struct fmb_robot_path *path)
 {
     struct fmb_gap gap;
     path->phase = FIRST;
     enter_pairs(path);
     for (size_t i = 0; i < path->live_count && path->hit > 0; i++) {
-        const struct path_bounds *bounds = &path->live[i];
+        const struct path_bounds *bounds = bounds_of(path, &(struct path_entry){.bounds = i});
         if (path_prove(path, bounds, &spheres, -0x1p-61, 60) <= 0) /* the middle is 0 */
             measure(path, bounds, 0, &gap);
     }
@@ -305,13 +316,15 @@ static void begin_first(struct fmb_robot_path *path)
 /* Whether an entry is proven; if not, *bound is a lower bound of the gap in the interval. */
 static bool prove_entry(struct fmb_robot_path *path, const struct path_entry *entry, double *bound)
 {
-    const struct path_bounds *bounds = &path->live[entry->bounds];
-    const double w = ldexp(1, -entry->level), middle = entry->low + w / 2;
-    struct path_leaf leaf = {bounds->a,    bounds->b,  bounds->chain,
-                             entry->level, entry->low, spheres};
+    const struct path_bounds *of = &path->live[entry->bounds];
+    struct path_leaf leaf = {of->a, of->b, of->chain, entry->level, entry->low, spheres};
     struct path_direction carried[3], best;
     struct fmb_gap gap;
     *bound = -INFINITY;
+    if (path->phase == LEAST && entry->level == 0 && suffices(path, &leaf, entry->key))
+        return true; /* by its spheres: the target has come nearer */
+    const struct path_bounds *bounds = bounds_of(path, entry);
+    const double w = ldexp(1, -entry->level), middle = entry->low + w / 2;
     if (suffices(path, &leaf, path_prove(path, bounds, &spheres, entry->low, entry->level)))
         return true;
     if (!measure(path, bounds, middle, &gap))
@@ -396,8 +409,7 @@ static bool take(struct fmb_robot_path *path, struct fmb_robot_edge *out)
         return false;
     /* A contact at the end of the entry may be no deeper than the errors: looks beyond it. */
     if (first && entry.level == CONTACT_LEVEL)
-        measure(path, &path->live[entry.bounds], fmin(1, entry.low + ldexp(2, -CONTACT_LEVEL)),
-                &gap);
+        measure(path, bounds_of(path, &entry), fmin(1, entry.low + ldexp(2, -CONTACT_LEVEL)), &gap);
     const bool open =
         entry.level >= PATH_LEVEL_MAX || ++path->work > (first ? FIRST_ENTRIES : LEAST_ENTRIES);
     if (!open) {
