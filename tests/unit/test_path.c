@@ -378,13 +378,16 @@ static void bad_edges_and_worlds_are_refused(void **state)
     fmb_robot_path_free(path);
     assert_int_equal(fmb_robot_path_begin(world.scene, -1, &path), -1);
     fmb_robot_path_free(path);
-    world.placement[0].velocity[1] = 1;
     world.around.duration = 1;
-    fmb_robot_scene_free(world.scene);
-    place_world(&world);
-    assert_int_equal(fmb_robot_path_begin(world.scene, 0, &path), -1);
-    assert_non_null(strstr(fmb_robot_path_why(path), "moves"));
-    fmb_robot_path_free(path);
+    for (int ends = 0; ends < 2; ends++) {
+        world.placement[0].velocity[1] = !ends;
+        world.placement[0].end_count = ends ? 3 + world.placement[0].orientation_count : 0;
+        fmb_robot_scene_free(world.scene);
+        place_world(&world);
+        assert_int_equal(fmb_robot_path_begin(world.scene, 0, &path), -1);
+        assert_non_null(strstr(fmb_robot_path_why(path), "moves"));
+        fmb_robot_path_free(path);
+    }
     clear_world(&world);
     world.robot = read_text(
         "<robot name=\"r\"><link name=\"base\"><collision><geometry>"
