@@ -101,28 +101,25 @@ static bool is_help(const char *word)
     return strcmp(word, "help") == 0 || is_one_of(word, "--help", "-h");
 }
 
-/* argv[0]: the name of the menu. "help log cut" becomes "log help cut". */
+/* argv[0]: the name of the menu. "help log cut" becomes "log cut --help". */
 static int run_menu(const struct menu *menu, int argc, char **argv)
 {
-    char option[] = "--help";
+    static char option[] = "--help";
     if (argc < 2) {
         print_help(menu, stderr);
         return ARGS_USAGE;
     }
     if (!is_help(argv[1]))
         return run_command(menu, argc - 1, argv + 1);
-    const bool print = argc == 2 || is_help(argv[2]);
-    const bool nested = argc > 3 && menu == &fmb && strcmp(argv[2], "log") == 0;
-    if (strcmp(argv[1], "help") != 0 && argc > 2)
-        return refuse(menu, "argument", argv[2]);
-    if (argc > 3 + nested)
-        return refuse(menu, "argument", argv[3 + nested]);
-    if (print) {
+    if (argc == 2 || is_help(argv[2])) {
         print_help(menu, stdout);
         return ARGS_ANSWERED;
     }
-    char *arguments[] = {argv[2], nested ? argv[1] : option, nested ? argv[3] : NULL, NULL};
-    return run_command(menu, nested ? 3 : 2, arguments);
+    if (strcmp(argv[1], "help") != 0)
+        return refuse(menu, "argument", argv[2]);
+    memmove(argv + 1, argv + 2, (size_t) (argc - 2) * sizeof *argv);
+    argv[argc - 1] = option;
+    return run_menu(menu, argc, argv);
 }
 
 static int cmd_log(int argc, char **argv)

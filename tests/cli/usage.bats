@@ -164,7 +164,6 @@ frobnicate|fmb: unknown command 'frobnicate'
 -h x|fmb: unknown argument 'x'
 --version x|fmb: unknown argument 'x'
 -V x|fmb: unknown argument 'x'
-help query x|fmb: unknown argument 'x'
 help frobnicate|fmb: unknown command 'frobnicate'
 log frobnicate|fmb log: unknown command 'frobnicate'
 log info|fmb log info: expected a LOG
