@@ -14,14 +14,11 @@ static void begin_value(struct json_writer *json, const char *key)
 {
     if (json->comma)
         putc(',', json->out);
-    if (json->space)
-        fputs(json->space, json->out);
-    else if (json->comma && !json->page)
+    if (json->comma && !json->page)
         putc(' ', json->out);
     if (key)
         fprintf(json->out, json->page ? "\"%s\":" : "\"%s\": ", key);
     json->comma = true;
-    json->space = NULL;
 }
 
 static void value(struct json_writer *json, const char *key, const char *text)
@@ -41,11 +38,6 @@ void json_end(struct json_writer *json, char bracket)
 {
     putc(bracket, json->out);
     json->comma = true;
-}
-
-void json_break(struct json_writer *json, const char *space)
-{
-    json->space = space;
 }
 
 struct json_writer json_object(FILE *out)

@@ -18,18 +18,14 @@
 /* The caller sets out (not owned), page and digits; all else is 0 at first. */
 struct json_writer {
     FILE *out;
-    bool page;         /* for scripts: no spaces, and integers beyond +-(2^53 - 1) as strings */
-    int digits;        /* of numbers; 0: as many as read back as the same bits */
-    bool comma;        /* private: the next element needs a comma before it */
-    const char *space; /* private: of json_break(), or NULL */
+    bool page;  /* for scripts: no spaces, and integers beyond +-(2^53 - 1) as strings */
+    int digits; /* of numbers; 0: as many as read back as the same bits */
+    bool comma; /* private: the next element needs a comma before it */
 };
 
 /* bracket: '{' or '[', ended by '}' or ']'. */
 void json_begin(struct json_writer *json, const char *key, char bracket);
 void json_end(struct json_writer *json, char bracket);
-
-/* Puts this white space, a string literal, before the next element. */
-void json_break(struct json_writer *json, const char *space);
 
 /* Begin and end a text that is one object on a line; another one may follow. */
 struct json_writer json_object(FILE *out);

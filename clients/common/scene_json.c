@@ -102,6 +102,13 @@ void scene_json_frames(struct json_writer *json, const struct fmb_body *body)
     json_end(json, ']');
 }
 
+void scene_json_motion(struct json_writer *json, const struct fmb_placement *placement, int dim)
+{
+    if (placement->orientation_count > 0)
+        json_numbers(json, "orientation", placement->orientation, placement->orientation_count);
+    write_vector(json, "velocity", placement->velocity, dim);
+}
+
 /* A body of one frame by vertices (not a sphere), or whose origin or centre is 0, is written as
  * that frame. A frame of components then has the position of the body as its origin, unless the
  * body is turned.
@@ -129,9 +136,7 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
         json_numbers(json, "origin", placement->position, dim);
     else
         write_vector(json, "position", placement->position, dim);
-    if (placement->orientation_count > 0)
-        json_numbers(json, "orientation", placement->orientation, placement->orientation_count);
-    write_vector(json, "velocity", placement->velocity, dim);
+    scene_json_motion(json, placement, dim);
     json_end(json, '}');
 }
 

@@ -4,7 +4,6 @@
 #include "report.h"
 #include "scene_json.h"
 
-#include <float.h>
 #include <glib.h>
 #include <math.h>
 #include <stdlib.h>
@@ -56,7 +55,6 @@ static void put_elements(struct json_writer *json, struct text *text)
     const size_t size = text_size(text);
     if (size == 0)
         return;
-    json_break(json, "\n");
     json_begin(json, NULL, ' '); /* nothing but the comma */
     fwrite(text->bytes, 1, size, json->out);
     json->comma = true;
@@ -183,67 +181,28 @@ void page_body(struct page *page, const struct fmb_placement *placement, const c
         body->shape = shape_of(page, placement->body);
 }
 
-/* Writes numbers with their digits down to 1e-6 of the extent; 0: all digits. */
-static void put_vector(struct json_writer *json, const char *key, const double *vector, int dim,
-                       double extent)
-{
-    const int digits = json->digits;
-    json_begin(json, key, '[');
-    for (int i = 0; i < dim; i++) {
-        const double apart = log10(fabs(vector[i])) - log10(extent);
-        const bool is_small = vector[i] == 0 || apart < -6;
-        json->digits = extent > 0 ? (int) fmin(fmax(7 + floor(apart), 1), 17) : 0;
-        json_number(json, NULL, is_small ? 0 : vector[i]);
-    }
-    json_end(json, ']');
-    json->digits = digits;
-}
-
-/* Half of the largest distance from `from` (NULL: from 0), since the whole may overflow. */
-static double largest_of(const double *vector, const double *from, int dim)
-{
-    double largest = 0;
-    for (int axis = 0; axis < dim; axis++)
-        largest = fmax(largest, fabs(vector[axis] / 2 - (from ? from[axis] / 2 : 0)));
-    return largest;
-}
-
+/* Poses have all digits: a small motion may be far from the origin. */
 static void put_bodies(struct page *page, struct json_writer *json)
 {
-    double extent = 0, speed = 0;
-    const struct body *first = NULL;
-    for (size_t i = 0; i < page->body_count; i++) {
-        const struct body *body = &page->body[i];
-        first = first || body->dim == 0 ? first : body;
-        if (body->dim == 0)
-            continue;
-        extent = fmax(extent, largest_of(body->placed.position, first->placed.position, body->dim));
-        speed = fmax(speed, largest_of(body->placed.velocity, NULL, body->dim));
-    }
-    extent = fmax(extent, fmin(speed * page->step.duration, DBL_MAX));
+    json->digits = 0;
     json_begin(json, "bodies", '[');
     for (size_t i = 0; i < page->body_count; i++) {
         const struct body *body = &page->body[i];
-        const struct fmb_placement *placed = &body->placed;
         json_begin(json, NULL, '{');
-        json_integer(json, "id", placed->id);
-        if (placed->name && *placed->name)
-            json_string(json, "name", placed->name);
-        if (body->dim == 0)
+        json_integer(json, "id", body->placed.id);
+        if (body->placed.name && *body->placed.name)
+            json_string(json, "name", body->placed.name);
+        if (body->dim == 0) {
             json_string(json, "missing", body->missing);
-        else
+        } else {
             json_integer(json, "shape", body->shape);
-        if (body->dim > 0)
-            put_vector(json, "position", placed->position, body->dim, extent);
-        if (body->dim > 0 && placed->orientation_count > 0)
-            put_vector(json, "orientation", placed->orientation, placed->orientation_count,
-                       largest_of(placed->orientation, NULL, placed->orientation_count));
-        if (largest_of(placed->velocity, NULL, body->dim) > 0)
-            put_vector(json, "velocity", placed->velocity, body->dim,
-                       page->step.duration > 0 ? extent / page->step.duration : 0);
+            json_numbers(json, "position", body->placed.position, body->dim);
+            scene_json_motion(json, &body->placed, body->dim);
+        }
         json_end(json, '}');
     }
     json_end(json, ']');
+    json->digits = DIGITS;
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
@@ -309,7 +268,6 @@ struct json_writer *page_step_begin(struct page *page, const struct page_step *s
         text_rewind(&page->pairs[rank]);
         page->pair_count[rank] = 0;
     }
-    json_break(json, "\n");
     json_begin(json, NULL, '{');
     json->digits = 0;
     json_number(json, "t", step->time);

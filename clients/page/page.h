@@ -10,9 +10,8 @@
  *     page_write(page, out);
  *
  * page_exchange.h does this for the queries of a log, page_scene_begin() for the bodies of a scene.
- * Shapes are written once. Poses are for pictures: rounded to some 1e-6 of the extent of the step.
- * Numbers of answers have nine digits, and all digits where two answers differ. All texts may be
- * any bytes.
+ * Shapes are written once. Numbers of answers have nine digits, and all digits where two answers
+ * differ; poses have all. All texts may be any bytes.
  *
  * All functions exit with status 1 if memory is exhausted. For one thread at a time. */
 #ifndef PAGE_H

@@ -108,7 +108,6 @@ static void write_all(struct json_writer *json)
     json_begin(json, NULL, '{');
     json_begin(json, "none", '[');
     json_end(json, ']');
-    json_break(json, "\n ");
     json_begin(json, "some", '[');
     json_integer(json, NULL, -1);
     json_null(json, NULL);
@@ -131,12 +130,12 @@ static void commas_and_spaces(void **state)
     write_all(&json);
     json_number(&json, NULL, 1);
     expect_text(&json,
-                "{\"none\": [],\n \"some\": [-1, null, {\"yes\": true, \"no\": false}], "
+                "{\"none\": [], \"some\": [-1, null, {\"yes\": true, \"no\": false}], "
                 "\"box\": [0,0.5,-0], \"raw\": \"AA==\", \"bytes\": \"a\\u0000b\"}\n1");
     json = begin_text(true);
     write_all(&json);
     expect_text(&json,
-                "{\"none\":[],\n \"some\":[-1,null,{\"yes\":true,\"no\":false}],"
+                "{\"none\":[],\"some\":[-1,null,{\"yes\":true,\"no\":false}],"
                 "\"box\":[0,0.5,-0],\"raw\":\"AA==\",\"bytes\":\"a\\u0000b\"}\n");
 }
 
