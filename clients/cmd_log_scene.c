@@ -27,9 +27,8 @@ static const char usage[] =
     "definitions of bodies. Bodies that came by handle get their frames back.\n"
     "\n"
     "  --event N            the event with this number, as 'fmb replay' prints it: a\n"
-    "                       query, or the result of one\n"
-    "  --offset BYTES       the event at this offset in the file, where numbers\n"
-    "                       repeat\n"
+    "                       query, or the result of one. Where numbers repeat, 'fmb\n"
+    "                       log cut' copies the log with new ones\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
@@ -138,10 +137,9 @@ static int run_scene(const struct log_query_options *options)
 
 int cmd_log_scene(int argc, char **argv)
 {
-    long event = not_given, offset = not_given;
+    long event = not_given;
     const struct args_option own[] = {
         {"event", ARGS_INTEGER, &event, .low = LONG_MIN, .high = 0x1p63 - 1024},
-        {"offset", ARGS_INTEGER, &offset, .high = 0x1p63 - 1024},
         {.name = NULL},
     };
     struct args args = {"log scene",         usage, own, .operand = "LOG", .operands_min = 1,
@@ -149,14 +147,12 @@ int cmd_log_scene(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if ((event != not_given) == (offset != not_given)) {
-        args_error(&args, "expected --event or --offset");
+    if (event == not_given) {
+        args_error(&args, "expected --event N");
         return ARGS_USAGE;
     }
-    const bool by_offset = offset != not_given;
     return run_scene(&(struct log_query_options){.log = args.operands,
                                                  .log_count = args.operand_count,
                                                  .prefix = args.bus.prefix,
-                                                 .at = by_offset ? offset : event,
-                                                 .by_offset = by_offset});
+                                                 .event = event});
 }

@@ -13,9 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Limit on the matching events that an error lists. */
-enum { LISTED_MAX = 8 };
-
 struct query_search {
     const struct log_query_options *options;
     struct log_query *out;
@@ -24,10 +21,9 @@ struct query_search {
     struct match match; /* of the last log */
     struct logged_result result;
     enum log_query_outcome outcome;
-    /* Events that match the options: their number, and the offsets of the first ones. The members
-     * below describe the first match, whose data is in out->bytes. */
+    /* How many events have the number. The members below describe the first one, whose data is in
+     * out->bytes. */
     int64_t count;
-    int64_t listed[LISTED_MAX]; /* offsets */
     enum log_kind kind;
     size_t item;       /* its index in match */
     const char *error; /* why it cannot be decoded; NULL: it can */
@@ -38,8 +34,6 @@ struct query_search {
 static void take_match(struct query_search *search, enum log_kind kind,
                        const struct log_event *event, const char *error)
 {
-    if (search->count < LISTED_MAX)
-        search->listed[search->count] = event->offset;
     if (search->count++ > 0)
         return;
     search->kind = kind;
@@ -58,7 +52,7 @@ static void take_event(struct query_search *search, const struct log_event *even
     if (search->input.log + 1 < search->options->log_count)
         return;
     const char *error = match_read(&item, kind, event, &search->result);
-    if ((search->options->by_offset ? event->offset : event->number) == search->options->at)
+    if (event->number == search->options->event)
         take_match(search, kind, event, error);
     if (!error)
         match_add(&search->match, &item);
@@ -94,18 +88,8 @@ __attribute__((format(printf, 2, 3))) static void refuse(struct query_search *se
     va_start(list, format);
     vsnprintf(why, sizeof why, format, list);
     va_end(list);
-    complain("%s: %s %" PRId64 "%s", options->log[options->log_count - 1],
-             options->by_offset ? "offset" : "event", options->at, why);
+    complain("%s: event %" PRId64 "%s", options->log[options->log_count - 1], options->event, why);
     search->outcome = LOG_QUERY_NONE;
-}
-
-static void refuse_several(struct query_search *search)
-{
-    char offsets[LISTED_MAX * 32] = "";
-    for (int64_t i = 0, used = 0; i < search->count && i < LISTED_MAX; i++)
-        used += sprintf(offsets + used, " --offset %" PRId64, search->listed[i]);
-    refuse(search, " is there %" PRId64 " times:%s%s", search->count, offsets,
-           search->count > LISTED_MAX ? " ..." : "");
 }
 
 /* Returns the query that was requested, or whose result was. Returns NULL after an error, which was
@@ -113,7 +97,8 @@ static void refuse_several(struct query_search *search)
 static const struct match_item *find_query(struct query_search *search)
 {
     if (search->count > 1)
-        refuse_several(search);
+        refuse(search, " is there %" PRId64 " times: 'fmb log cut' numbers events anew",
+               search->count);
     else if (search->count == 0)
         refuse(search, ": there is none");
     else if (search->kind >= LOG_STATUS)

@@ -12,9 +12,7 @@ struct log_query_options {
     char *const *log; /* [log_count] */
     int log_count;
     const char *prefix; /* of the channels; "": none */
-    /* Which event, a query or its result: that with this number in the log, or at this offset. */
-    int64_t at;
-    bool by_offset;
+    int64_t event;      /* number of the event, a query or its result, in the last log */
 };
 
 struct log_query {

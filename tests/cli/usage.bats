@@ -131,9 +131,7 @@ log results:--csv --csv=1 LOG
 log scene:--event 1
 log scene:LOG
 log scene:LOG --event x
-log scene:LOG --event 1 --offset 1
 log scene:LOG --event 9223372036854775808
-log scene:LOG --offset -1
 log scene:LOG --what
 record:FILE b
 record:--duration 0 FILE

@@ -205,24 +205,19 @@ static bool read_recorded(const struct world_event *event, enum log_kind kind)
 /* The query that a result has, by the number of its event. */
 static int64_t query_by_result(size_t event, const struct match_key *ids)
 {
-    const struct log_query_options by_number = {.at = (int64_t) event};
+    const struct log_query_options by_number = {.event = (int64_t) event};
     if (look_for(by_number) != LOG_QUERY_FOUND)
         return 0;
     assert_int_equal(found.key.client_id, ids->client_id);
     assert_int_equal(found.key.sequence_number, ids->sequence_number);
     const int64_t compared = decide_found();
 
-    /* The same query, however it is selected. */
+    /* The same query, by the number of its own event. */
     const int64_t offset = found.offset, number = found.number;
-    const struct log_query_options ways[] = {
-        {.at = number},
-        {.at = offset, .by_offset = true},
-    };
-    for (size_t i = 0; i < COUNT(ways); i++) {
-        assert_int_equal(look_for(ways[i]), LOG_QUERY_FOUND);
-        assert_int_equal(found.offset, offset);
-        assert_int_equal(decide_found(), compared);
-    }
+    const struct log_query_options by_own_number = {.event = number};
+    assert_int_equal(look_for(by_own_number), LOG_QUERY_FOUND);
+    assert_int_equal(found.offset, offset);
+    assert_int_equal(decide_found(), compared);
     return compared;
 }
 
@@ -264,10 +259,10 @@ static void undefined_handles_are_reported(void **state)
     world_make_large(300, 1, &world);
     const struct log_world late = {.event = world.event + 2, .count = 2};
     world_write(&late, path);
-    const struct log_query_options first = {.at = 0};
+    const struct log_query_options first = {.event = 0};
     assert_int_equal(look_for(first), LOG_QUERY_NONE);
     world_write(&world, path);
-    const struct log_query_options third = {.at = 2};
+    const struct log_query_options third = {.event = 2};
     assert_int_equal(look_for(third), LOG_QUERY_FOUND);
     log_world_clear(&world);
 }
@@ -288,11 +283,9 @@ static void what_is_not_there_is_not_found(void **state)
     world_add(&world, WIRE_PAIR_QUERY, "no query", 8);
     world_write(&world, path);
     const struct log_query_options ways[] = {
-        {.at = 1},
-        {.at = 2},
-        {.at = 3},
-        {.at = 1, .by_offset = true},
-        {.at = 99999, .by_offset = true},
+        {.event = 1},
+        {.event = 2},
+        {.event = 3},
     };
     for (size_t i = 0; i < COUNT(ways); i++)
         assert_int_equal(look_for(ways[i]), LOG_QUERY_NONE);
@@ -326,7 +319,7 @@ static void add_result(struct log_world *world, int64_t utime)
 
 static void a_result_has_the_query_of_its_time(void **state)
 {
-    const struct log_query_options by_result = {.at = 3};
+    const struct log_query_options by_result = {.event = 3};
     struct log_world world = {.state = 1};
     add_query(&world, 1000, 1);
     add_query(&world, 1000, 2);
