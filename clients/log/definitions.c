@@ -10,10 +10,9 @@
 
 struct defined_body {
     UT_hash_handle by_bytes, by_handle;
-    struct defined_body *next; /* the next body whose handle is not computed yet */
-    struct body_view view;     /* size 0: of a handle without a body, which is not in by_bytes */
-    int64_t file;              /* the last one that defines the body */
-    bool wanted;               /* without a body: named, and not given up */
+    struct body_view view; /* size 0: of a handle without a body, which is not in by_bytes */
+    int64_t file;          /* the last one that defines the body */
+    bool wanted;           /* without a body: named, and not given up */
     unsigned char bytes[];
 };
 
@@ -22,8 +21,7 @@ enum { TABLE_BYTES = 48 };
 
 struct definitions {
     struct defined_body *by_bytes, *by_handle; /* heads of the tables */
-    struct defined_body *unhashed;
-    size_t bytes; /* of all bodies */
+    size_t bytes;                              /* of all bodies */
     int64_t file;
     struct hasher *hasher;
     struct logged_query query;
@@ -67,35 +65,11 @@ void definitions_close(struct definitions *definitions)
 
 /* ---- Bodies ---- */
 
-static struct defined_body *find_hashed(struct definitions *definitions,
-                                        const struct handle *handle)
+static struct defined_body *find(const struct definitions *definitions, const struct handle *handle)
 {
     struct defined_body *body;
     HASH_FIND(by_handle, definitions->by_handle, handle, sizeof *handle, body);
     return body;
-}
-
-/* A body replaces its handle without a body. */
-static void compute_handles(struct definitions *definitions)
-{
-    for (struct defined_body *body; (body = definitions->unhashed) != NULL;) {
-        definitions->unhashed = body->next;
-        struct handle *handle = &body->view.handle;
-        *handle = hasher_handle(definitions->hasher, body->bytes, body->view.size);
-        struct defined_body *wanted = find_hashed(definitions, handle);
-        if (wanted) {
-            HASH_DELETE(by_handle, definitions->by_handle, wanted);
-            definitions->bytes -= sizeof *wanted + TABLE_BYTES;
-            free(wanted);
-        }
-        HASH_ADD(by_handle, definitions->by_handle, view.handle, sizeof *handle, body);
-    }
-}
-
-static struct defined_body *find(struct definitions *definitions, const struct handle *handle)
-{
-    compute_handles(definitions);
-    return find_hashed(definitions, handle);
 }
 
 static struct defined_body *make(struct definitions *definitions, const struct body_view *view)
@@ -109,6 +83,20 @@ static struct defined_body *make(struct definitions *definitions, const struct b
     return body;
 }
 
+/* A body replaces its handle without a body. */
+static void add_handle(struct definitions *definitions, struct defined_body *body)
+{
+    struct handle *handle = &body->view.handle;
+    *handle = hasher_handle(definitions->hasher, body->bytes, body->view.size);
+    struct defined_body *wanted = find(definitions, handle);
+    if (wanted) {
+        HASH_DELETE(by_handle, definitions->by_handle, wanted);
+        definitions->bytes -= sizeof *wanted + TABLE_BYTES;
+        free(wanted);
+    }
+    HASH_ADD(by_handle, definitions->by_handle, view.handle, sizeof *handle, body);
+}
+
 bool definitions_add(struct definitions *definitions, const struct body_view *view)
 {
     struct defined_body *body = NULL;
@@ -119,8 +107,7 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
     if (is_new) {
         body = make(definitions, view);
         HASH_ADD_KEYPTR(by_bytes, definitions->by_bytes, body->bytes, body->view.size, body);
-        body->next = definitions->unhashed;
-        definitions->unhashed = body;
+        add_handle(definitions, body);
     }
     body->file = definitions->file;
     return is_new;
@@ -212,7 +199,6 @@ void definitions_give_up(struct definitions *definitions, const struct handle *h
 
 size_t definitions_wanted(struct definitions *definitions)
 {
-    compute_handles(definitions);
     return HASH_CNT(by_handle, definitions->by_handle) - definitions_count(definitions);
 }
 

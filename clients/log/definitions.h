@@ -3,7 +3,7 @@
  * Bodies come from placements that carry them whole, and from definition_t messages, anywhere in
  * the log. Each distinct body is kept once, in some 200 bytes and its encoded form (at most 109
  * bytes for a frame): memory grows with the number of distinct bodies, not with the log. Adding a
- * body costs one look-up. Handles are only computed once one is looked up.
+ * body that is known costs one look-up.
  *
  * A file that is written has to define the handles that its queries name. Per file and body one
  * definition (definition_t of client 0 and server 0) is written, before the first query that needs
