@@ -42,9 +42,11 @@ const char *number_or_inf(double value, char text[NUMBER_TEXT_MAX])
     return strcpy(text, value < 0 ? "-inf" : "inf");
 }
 
+enum { SHORT_DIGITS = 6 };
+
 const char *number_short(double value, char text[NUMBER_TEXT_MAX])
 {
-    snprintf(text, NUMBER_TEXT_MAX, "%.*g", NUMBER_SHORT_DIGITS, value);
+    snprintf(text, NUMBER_TEXT_MAX, "%.*g", SHORT_DIGITS, value);
     return text;
 }
 
@@ -59,24 +61,23 @@ static int first_place(double value)
     return (int) floor(log10(value));
 }
 
-/* Returns the number of digits for number_ends(). */
+/* The number of digits for number_ends(). */
 static int digits_for(double low, double high)
 {
     double difference = high - low, largest = fmax(fabs(low), fabs(high));
     if (!isfinite(difference) || largest == 0)
-        return NUMBER_SHORT_DIGITS;
+        return SHORT_DIGITS;
     if (difference > 0)
-        return clamp(first_place(largest) - first_place(difference) + 3, NUMBER_SHORT_DIGITS, 17);
-    return clamp(first_place(largest) + 4, NUMBER_SHORT_DIGITS, 12);
+        return clamp(first_place(largest) - first_place(difference) + 3, SHORT_DIGITS, 17);
+    return clamp(first_place(largest) + 4, SHORT_DIGITS, 12);
 }
 
-int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
-                char high_text[NUMBER_TEXT_MAX])
+void number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
+                 char high_text[NUMBER_TEXT_MAX])
 {
     int digits = digits_for(low, high);
     snprintf(low_text, NUMBER_TEXT_MAX, "%.*g", digits, low);
     snprintf(high_text, NUMBER_TEXT_MAX, "%.*g", digits, high);
-    return digits;
 }
 
 const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX])

@@ -28,10 +28,9 @@ const char *number_short(double value, char text[NUMBER_TEXT_MAX]);
 
 /* The ends of an interval, low <= high, for people. They have six digits, or more, up to 17, if it
  * takes more to show three digits of their difference; if they are equal, up to 12, to show three
- * digits after the decimal point. Returns the number of digits. */
-enum { NUMBER_SHORT_DIGITS = 6 };
-int number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
-                char high_text[NUMBER_TEXT_MAX]);
+ * digits after the decimal point. */
+void number_ends(double low, double high, char low_text[NUMBER_TEXT_MAX],
+                 char high_text[NUMBER_TEXT_MAX]);
 
 /* With a comma between thousands, for people: "4,194,304". Returns text. */
 const char *number_grouped(int64_t value, char text[NUMBER_TEXT_MAX]);

@@ -3,14 +3,9 @@
 #include "escape.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <string.h>
 
-/* Width of one end of a box among large numbers, which %g prints with an exponent. */
-enum { LARGE_END_WIDTH = 12 };
-static const double large_end = 1e5;
-
-/* A table of large coordinates, such as those of maps, has wide columns from its first row on. */
+/* The columns of bodies are wide enough for all from the first row on. */
 static struct report_columns columns_for(const struct owned_scene *scene)
 {
     struct report_columns columns = report_columns();
@@ -19,9 +14,6 @@ static struct report_columns columns_for(const struct owned_scene *scene)
         const struct fmb_placement *body = &scene->scene.placements[i];
         const int width = report_body_width(body->name, body->id);
         columns.body = width > columns.body ? width : columns.body;
-        for (int axis = 0; axis < scene->dim; axis++)
-            if (fabs(body->position[axis]) >= large_end)
-                columns.box[axis][0] = columns.box[axis][1] = LARGE_END_WIDTH;
     }
     return columns;
 }

@@ -42,8 +42,8 @@ void report_names_json(struct json_writer *json, const char *const name[2]);
 void report_csv_begin(FILE *out);
 void report_row_csv(FILE *out, const struct report_row *row);
 
-/* The widths of the columns of a table. A row with longer names, or with numbers of more digits
- * than usual, widens them for the rows below it. */
+/* The widths of the columns of a table. A row with longer texts widens them for the rows below it.
+ */
 struct report_columns {
     int body, contact, gap, point;
     int box[FMB_DIM_MAX][2]; /* [axis][low, high] */

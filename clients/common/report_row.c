@@ -197,34 +197,29 @@ void report_headings(FILE *out, const struct report_columns *columns, bool gap, 
     fputs(box ? "  box\n" : "\n", out);
 }
 
-/* Returns the width to print text with. If it has more digits than usual, the rows below probably
- * have too: the column becomes wider. Any other text that is too long exceeds its column. */
-static int widen(int *width, int digits, const char *text)
+/* Returns the width to print text with. A longer text widens the column for the rows below it. */
+static int widen(int *width, const char *text)
 {
-    int length = (int) strlen(text);
-    if (digits > NUMBER_SHORT_DIGITS && length > *width)
-        *width = length;
+    const int length = (int) strlen(text);
+    *width = length > *width ? length : *width;
     return *width;
 }
 
-/* Writes the contact interval, such as "0.25 to 0.5 s". Returns the number of digits. */
-static int contact_text(const struct fmb_answer *answer, char text[TEXT_MAX])
+/* Writes the contact interval, such as "0.25 to 0.5 s". */
+static void contact_text(const struct fmb_answer *answer, char text[TEXT_MAX])
 {
     char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
-    int digits = number_ends(answer->contact[0], answer->contact[1], first, last);
+    number_ends(answer->contact[0], answer->contact[1], first, last);
     snprintf(text, TEXT_MAX, "%s to %s s", first, last);
-    return digits;
 }
 
 /* Writes one number if the bounds have the same digits. */
-static int gap_text(const struct fmb_gap *gap, char text[TEXT_MAX])
+static void gap_text(const struct fmb_gap *gap, char text[TEXT_MAX])
 {
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_short(gap->bounds[0], low);
     number_short(gap->bounds[1], high);
-    const bool same = strcmp(low, high) == 0;
-    snprintf(text, TEXT_MAX, same ? "%s" : "%s .. %s", low, high);
-    return same ? NUMBER_SHORT_DIGITS : NUMBER_SHORT_DIGITS + 1;
+    snprintf(text, TEXT_MAX, strcmp(low, high) == 0 ? "%s" : "%s .. %s", low, high);
 }
 
 const char *report_point(int dim, const double *point, char text[REPORT_POINT_MAX])
@@ -245,9 +240,9 @@ static void text_box(FILE *out, int dim, const struct fmb_answer *answer,
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     for (int axis = 0; axis < dim; axis++) {
         bool last = axis == dim - 1;
-        int digits = number_ends(answer->box[0][axis], answer->box[1][axis], low, high);
-        fprintf(out, "  %c %*s .. %-*s", "xyz"[axis], widen(&columns->box[axis][0], digits, low),
-                low, last ? 0 : widen(&columns->box[axis][1], digits, high), high);
+        number_ends(answer->box[0][axis], answer->box[1][axis], low, high);
+        fprintf(out, "  %c %*s .. %-*s", "xyz"[axis], widen(&columns->box[axis][0], low), low,
+                last ? 0 : widen(&columns->box[axis][1], high), high);
     }
 }
 
@@ -261,16 +256,17 @@ static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
         fputs(verdict, out);
         return;
     }
-    int digits = answer->has_contact ? contact_text(answer, text) : 0;
+    if (answer->has_contact)
+        contact_text(answer, text);
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
-            answer->has_gap || beyond ? widen(&columns->contact, digits, text) : 0, text);
+            answer->has_gap || beyond ? widen(&columns->contact, text) : 0, text);
     if (answer->has_gap) {
-        digits = gap_text(&answer->gap, text);
-        fprintf(out, "  %-*s", beyond ? widen(&columns->gap, digits, text) : 0, text);
+        gap_text(&answer->gap, text);
+        fprintf(out, "  %-*s", beyond ? widen(&columns->gap, text) : 0, text);
     }
     if (answer->has_point) {
         report_point(dim, answer->point, point);
-        const int width = widen(&columns->point, NUMBER_SHORT_DIGITS + 1, point); /* if longer */
+        const int width = widen(&columns->point, point);
         fprintf(out, "  %-*s", answer->has_box ? width : 0, point);
     }
     if (answer->has_box)

@@ -168,8 +168,8 @@ $two, \"pairs\": []}"
     ended 0
     is "scene 1: 3 bodies in 2D, 3 pairs, 0 to 1 s
   a  b  verdict      contact               box
-  1  2  overlapping  0 to 1 s              x   500000.125 .. 500001        y   5400000.25 .. 5400000.3125
-  1  3  overlapping  0 to 1 s              x       500000 .. 500001        y    5400000.5 .. 5400001
+  1  2  overlapping  0 to 1 s              x 500000.125 .. 500001    y 5400000.25 .. 5400000.3125
+  1  3  overlapping  0 to 1 s              x     500000 .. 500001    y  5400000.5 .. 5400001
   2  3  separated
 2 overlapping, 0 touching, 1 separated"
 }
