@@ -35,21 +35,17 @@ function momentText(i) {
     return [time, steps.length > 1 ? `step ${i + 1} of ${steps.length}` : "", steps[i].label ?? ""].filter(Boolean).join(" · ");
 }
 
-/* Browsers refuse more than about 20 changes a second, and then other navigation too. So at most ten
- * a second are made; the last one always is. */
-let hashTime = -Infinity, hashTimer = 0;
+/* Browsers refuse more than about 20 changes a second, and then other navigation too: the address follows when
+ * the moment has not moved for a while. */
+let hashTimer = 0;
 
 function setHash() {
     clearTimeout(hashTimer);
-    const early = hashTime + 100 - performance.now();
-    if (early > 0) {
-        hashTimer = setTimeout(setHash, early);
-        return;
-    }
-    hashTime = performance.now();
-    try {
-        history.replaceState(null, "", `#t=${Number(timeOf(player.s).toFixed(6))}`);
-    } catch (error) { /* of a page inside another one: the link stays as it was */ }
+    hashTimer = setTimeout(() => {
+        try {
+            history.replaceState(null, "", `#t=${Number(timeOf(player.s).toFixed(6))}`);
+        } catch (error) { /* of a page inside another one: the link stays as it was */ }
+    }, 100);
 }
 
 function seek(s) {
