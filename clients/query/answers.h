@@ -21,8 +21,8 @@ struct answers_bus;
 struct answers_bus *answers_bus_open(const struct args_bus *bus, double timeout, int retries);
 void answers_bus_close(struct answers_bus *answers);
 
-/* Returns false if later scenes need not be queried: there is no bus, or no service has answered
- * since it was opened. */
+/* Returns false if later scenes need not be queried: there is no bus; or no service has answered or
+ * sent a heartbeat since the bus was opened. */
 bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *scene,
                        fmb_client_sink *sink, void *user);
 

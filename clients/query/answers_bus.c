@@ -1,18 +1,31 @@
 #include "answers.h"
 
 #include "allocate.h"
+#include "clock.h"
 #include "complain.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Longest time to wait for the first heartbeat. A service sends one each second. */
+static const double heartbeat_max_s = 1.5;
+
 struct answers_bus {
     struct args_bus bus;
     struct fmb_client *client; /* NULL: could not be opened */
     double patience;           /* seconds until a query is given up */
     uint64_t advised;          /* outages that have been reported */
+    int64_t heartbeat_by;      /* end of the wait for a heartbeat; clock_ns() */
+    bool heartbeat;            /* a service has sent one */
 };
+
+static void on_heartbeat(void *user, const struct fmb_client_heartbeat *heartbeat)
+{
+    struct answers_bus *answers = user;
+    (void) heartbeat;
+    answers->heartbeat = true;
+}
 
 struct answers_bus *answers_bus_open(const struct args_bus *bus, double timeout, int retries)
 {
@@ -21,7 +34,11 @@ struct answers_bus *answers_bus_open(const struct args_bus *bus, double timeout,
     answers->patience = timeout * (retries + 1);
     answers->client = args_open_client(
         bus, (struct fmb_client_options){.timeout = timeout, .tries = retries + 1});
-    if (!answers->client)
+    answers->heartbeat_by = clock_ns() + (int64_t) (1e9 * heartbeat_max_s);
+    const struct fmb_client_watcher watcher = {.heartbeat = on_heartbeat, .user = answers};
+    if (answers->client)
+        fmb_client_watch(answers->client, &watcher);
+    else
         complain("to decide without a bus: fmb query --local");
     return answers;
 }
@@ -67,19 +84,37 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     run->sink(run->user, answer);
 }
 
-/* Reports each outage once. kind: of the queries. Returns false if no service has ever answered. */
+static struct fmb_client_counts counts_of(const struct answers_bus *answers)
+{
+    struct fmb_client_counts counts;
+    fmb_client_get_counts(answers->client, &counts);
+    return counts;
+}
+
+/* Whether a service has answered or sent a heartbeat since the bus was opened. Waits for one. */
+static bool service_seen(struct answers_bus *answers)
+{
+    int64_t left_ns;
+    while (!answers->heartbeat && counts_of(answers).answered == 0 &&
+           (left_ns = answers->heartbeat_by - clock_ns()) > 0)
+        if (fmb_client_handle(answers->client, 1e-9 * (double) left_ns) < 0)
+            return false;
+    return answers->heartbeat || counts_of(answers).answered > 0;
+}
+
+/* Reports each outage once. kind: of the queries. Returns false if no service has ever been seen.
+ */
 static bool advise(struct answers_bus *answers, const char *kind)
 {
     const char *prefix = answers->bus.prefix;
-    struct fmb_client_counts counts;
-    fmb_client_get_counts(answers->client, &counts);
+    const struct fmb_client_counts counts = counts_of(answers);
     if (answers->advised == counts.outages)
         return true;
     answers->advised = counts.outages;
-    const bool seen = counts.answered > 0;
+    const bool seen = service_seen(answers);
     complain("no fmbd answered on channel %sFMB_%s_RESULT of %s within %g s%s", prefix, kind,
              args_bus_name(&answers->bus), answers->patience,
-             seen ? "" : ": later scenes are not answered");
+             seen ? "" : ", and none sends a heartbeat: later scenes are not answered");
     if (counts.malformed > 0)
         complain("%" PRIu64 " results could not be read: another version of fmbd?",
                  counts.malformed);

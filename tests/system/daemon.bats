@@ -87,7 +87,7 @@ load service
     [ "$status" = 1 ]
     [ "${#lines[@]}" = 1 ]
     jq -e '.pairs | length == 3 and all(.error == "no fmbd answered")' <<< "$output"
-    grep -q 'no fmbd answered .* within 1 s: later scenes are not answered$' <<< "$stderr"
+    grep -q 'no fmbd answered .* within 1 s, and none sends a heartbeat: later scenes are not answered$' <<< "$stderr"
 }
 
 # bats test_tags=release
