@@ -28,7 +28,9 @@
 #   PYTHONDIR                      where fmb.py goes
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual; flags that change numbers are left out
 
-VERSION := 0.1.0
+# fmb.h has the version. Until 1.0 each minor version has a soname of its own.
+VERSION := $(shell awk '/^.define FMB_VERSION_M/ { printf "%s.", $$3 } /^.define FMB_VERSION_P/ { print $$3 }' service/fmb/fmb.h)
+SOVERSION := $(basename $(VERSION))
 MODE ?= release
 INSTRUCTIONS ?=
 ifeq ($(origin CC),default)
@@ -97,7 +99,7 @@ endif
 
 # -ffp-contract=off: the same bits on every machine. A user's flags come last, except for those that a file needs.
 # -fPIC: archives fit into shared objects too; without interposition it costs the programs nothing.
-flags := -std=c17 -D_POSIX_C_SOURCE=200809L -DFMB_VERSION='"$(VERSION)"' -ffp-contract=off -fno-semantic-interposition \
+flags := -std=c17 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -fno-semantic-interposition \
 	-Wall -Wextra -Wshadow -Wvla -Wstrict-prototypes -Wmissing-prototypes -Wwrite-strings \
 	$(if $(WERROR),-Werror) $(mode_flags_$(MODE))
 user_flags := $(CPPFLAGS) $(CFLAGS)
@@ -272,15 +274,17 @@ $(B)/libfmb-robot.a: $(filter-out %/joints.o %/robot_run.o %/path_proof.o,$(call
 	$(call library,fmb_robot_*)
 
 # The same as shared libraries, with the names of their headers alone.
-shared_libraries := $(B)/libfmb.so.0 $(B)/libfmb-client.so.0 $(B)/libfmb-robot.so.0
-$(B)/libfmb.so.0: shared_needs := -lgmp -lm
-$(B)/libfmb-client.so.0: shared_needs := $(B)/libfmb.so.0 -llcm -lglib-2.0 -lm
-$(B)/libfmb-robot.so.0: shared_needs := $(B)/libfmb.so.0 -lexpat -lcjson -lm
-$(B)/libfmb-client.so.0 $(B)/libfmb-robot.so.0: $(B)/libfmb.so.0
-$(shared_libraries): $(B)/%.so.0: $(B)/%.a
+so := so.$(SOVERSION)
+shared_libraries := $(B)/libfmb.$(so) $(B)/libfmb-client.$(so) $(B)/libfmb-robot.$(so)
+$(B)/libfmb.$(so): shared_needs := -lgmp -lm
+$(B)/libfmb-client.$(so): shared_needs := $(B)/libfmb.$(so) -llcm -lglib-2.0 -lm
+$(B)/libfmb-robot.$(so): shared_needs := $(B)/libfmb.$(so) -lexpat -lcjson -lm
+$(B)/libfmb-client.$(so) $(B)/libfmb-robot.$(so): $(B)/libfmb.$(so)
+$(shared_libraries): $(B)/%.$(so): $(B)/%.a
 	@echo '{ local: fmb_client_raw_*; };' > $@.map
 	$(call say,LD,$@) $(CC) $(filter-out -pie -no-pie,$(link_flags)) -shared -Wl,-soname,$(@F) -Wl,--version-script,$@.map -o $@ \
 		-Wl,--whole-archive $< -Wl,--no-whole-archive $(shared_needs)
+	@ln -sf $(@F) $(@:.$(SOVERSION)=)
 
 # ---- Programs ----
 
@@ -415,7 +419,7 @@ demo: # builds on all cores, also where packages are installed first
 
 sed_text = $(subst |,\|,$(subst &,\&,$(subst \,\\,$1)))
 fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call sed_text,$(LIBDIR))|' \
-	-e 's|@VERSION@|$(VERSION)|' -e 's|@PREFIX_FROM_LIBDIR@|$(call sed_text,$(shell \
+	-e 's|@VERSION@|$(VERSION)|' -e 's|@SOVERSION@|$(SOVERSION)|g' -e 's|@PREFIX_FROM_LIBDIR@|$(call sed_text,$(shell \
 	realpath -m --relative-to="$(LIBDIR)" "$(PREFIX)"))|'
 # Sets the mode before the text is written, whatever the umask.
 filled = $(INSTALL) -m 644 /dev/null $1 && $2 > $1
@@ -429,12 +433,12 @@ install: all
 	$(INSTALL) clients/robot/fmb-check-path "$(root)/bin"
 	$(INSTALL) -m 644 $(B)/libfmb.a $(B)/libfmb-client.a $(B)/libfmb-robot.a "$(DESTDIR)$(LIBDIR)"
 	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
-	for name in $(basename $(notdir $(shared_libraries))); do \
-		ln -sf $$name.0 "$(DESTDIR)$(LIBDIR)/$$name" || exit; done
+	for name in fmb fmb-client fmb-robot; do \
+		ln -sf lib$$name.$(so) "$(DESTDIR)$(LIBDIR)/lib$$name.so" || exit; done
 	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h service/fmb/fmb_batch.h clients/lib/fmb_client.h \
 		clients/robot/fmb_robot.h clients/python/fmb_flat.h "$(root)/include"
-	$(INSTALL) -m 644 clients/python/fmb.py "$(DESTDIR)$(PYTHONDIR)"
+	$(call filled,"$(DESTDIR)$(PYTHONDIR)/fmb.py",sed '/SONAME = /s/\.so"/.$(so)"/' clients/python/fmb.py)
 	$(INSTALL) -m 644 $(message_files) "$(root)/share/fmb/lcmtypes"
 	$(INSTALL) -m 644 LICENSE "$(root)/share/doc/fmb"
 	$(INSTALL) -m 644 $(M)/*.1 "$(root)/share/man/man1"
@@ -456,14 +460,14 @@ uninstall:
 		include/fmb_client.h include/fmb_robot.h include/fmb_flat.h share/fmb share/doc/fmb lib/systemd/system/fmbd.service \
 		share/man/man1/fmb.1 share/man/man1/fmb-*.1 share/man/man8/fmbd.8 \
 		share/bash-completion/completions/fmb share/bash-completion/completions/fmbd
-	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb.so libfmb.so.0 \
-		libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
+	cd "$(DESTDIR)$(LIBDIR)" && rm -rf libfmb.a libfmb-client.a libfmb-robot.a \
+		libfmb.so libfmb-client.so libfmb-robot.so $(notdir $(shared_libraries)) \
 		pkgconfig/fmb.pc pkgconfig/fmb-client.pc pkgconfig/fmb-robot.pc cmake/fmb
 	rm -f "$(DESTDIR)$(PYTHONDIR)"/fmb.py "$(DESTDIR)$(PYTHONDIR)"/__pycache__/fmb.*.pyc
 
 .PHONY: deb deb-test
 deb:
-	.debian/build.sh $(VERSION)
+	.debian/build.sh $(VERSION) $(SOVERSION)
 deb-test: deb programs
 	FMB_BUILD=$(B) bats --tap tests/deb/deb.bats
 

@@ -1,9 +1,9 @@
 #!/bin/sh
-# build.sh VERSION: builds the packages of Debian into build/deb, from a copy of the tree. The recipe is
+# build.sh VERSION SOVERSION: builds the packages of Debian into build/deb, from a copy of the tree. The recipe is
 # this folder. 'make deps-deb' installs what it needs.
 set -eu
 
-version=$1
+version=$1 soversion=$2
 copy=build/deb/fmb-$version
 cd "$(dirname "$0")/.."
 for tool in dh lintian; do
@@ -14,6 +14,10 @@ rm -rf build/deb
 mkdir -p "$copy"
 tar --exclude=./build --exclude=./.git -c . | tar -x -C "$copy"
 mv "$copy/.debian" "$copy/debian"
+sed -i "s/@SOVERSION@/$soversion/g" "$copy/debian/control"
+for file in "$copy"/debian/*@SOVERSION@*; do
+    mv "$file" "${file%@SOVERSION@*}$soversion${file##*@SOVERSION@}"
+done
 sed -n '/^Permission/,$ { s/^$/./; s/^/ /; p }' LICENSE >> "$copy/debian/copyright"
 {
     printf 'fmb (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n' "$version"

@@ -42,7 +42,8 @@ struct frame_numbers {
 static struct frame_numbers numbers_of(const struct fmb_frame *frame)
 {
     struct frame_numbers out;
-    out.count = fmb_frame_numbers(frame, &out.by_vertices, out.number);
+    out.count = fmb_frame_numbers(frame, &out.by_vertices, out.number,
+                                  sizeof out.number / sizeof *out.number);
     return out;
 }
 

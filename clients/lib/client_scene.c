@@ -51,7 +51,7 @@ static struct body_view view_of(const struct fmb_body *body)
         const struct fmb_frame *frame = fmb_body_frame(body, i);
         bool by_vertices;
         out.number_count +=
-            (int32_t) fmb_frame_numbers(frame, &by_vertices, NULL) + (frame->radius != 0);
+            (int32_t) fmb_frame_numbers(frame, &by_vertices, NULL, 0) + (frame->radius != 0);
         out.count_count += by_vertices;
     }
     out.size = GEOMETRY_NONE_BYTES + body->frame_count + 4 * (size_t) out.count_count +
@@ -80,7 +80,8 @@ static void write_body(const struct fmb_body *body, struct body_view *out, unsig
         const struct fmb_frame *frame = fmb_body_frame(body, i);
         double number[FMB_DIM_MAX * FMB_HULL_VERTICES_MAX];
         bool by_vertices;
-        const size_t count = fmb_frame_numbers(frame, &by_vertices, number);
+        const size_t count =
+            fmb_frame_numbers(frame, &by_vertices, number, FMB_DIM_MAX * FMB_HULL_VERTICES_MAX);
         const bool has_radius = frame->radius != 0;
         *writer_take(&shapes, 1) = (unsigned char) geometry_code(
             (struct geometry_shape){(int) frame->shape, by_vertices, has_radius});

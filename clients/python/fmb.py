@@ -61,8 +61,9 @@ __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Edge", "Error", "
 # ---- The libraries: fmb_flat.h, fmb_robot.h, and structs of fmb.h ----
 
 _ABI = 2
-_SONAME = "libfmb-client.so.0"
-_ROBOT_SONAME = "libfmb-robot.so.0"
+# The installed module names the libraries of its version.
+_SONAME = "libfmb-client.so"
+_ROBOT_SONAME = "libfmb-robot.so"
 _WHY_MAX = 512
 _INT, _UNSIGNED, _SIZE, _LONG, _REAL, _TEXT, _POINTER = (
     ctypes.c_int, ctypes.c_uint, ctypes.c_size_t, ctypes.c_int64, ctypes.c_double, ctypes.c_char_p, ctypes.c_void_p)

@@ -19,6 +19,9 @@
  * Threads: a robot is only read after fmb_robot_read(), so threads may share it. A scene may be
  * used by one thread at a time.
  *
+ * This header is unstable: functions and structs may change, or be removed, in each minor version.
+ * The form of path proofs is unstable too.
+ *
  * The library prints nothing. What is wrong with the input is returned as text. If memory is
  * exhausted, it prints that, and the process ends with status 1. */
 #ifndef FMB_ROBOT_H

@@ -17,8 +17,8 @@ static size_t list_vertices(const struct fmb_frame *frame, double (*out)[3])
     double numbers[FMB_FRAME_NUMBERS_MAX];
     bool by_vertices;
     if (frame->shape == FMB_HULL)
-        return fmb_frame_numbers(frame, &by_vertices, out[0]) / 3;
-    const size_t count = fmb_frame_numbers(frame, &by_vertices, numbers) / 3;
+        return fmb_frame_numbers(frame, &by_vertices, out[0], 3 * FMB_HULL_VERTICES_MAX) / 3;
+    const size_t count = fmb_frame_numbers(frame, &by_vertices, numbers, FMB_FRAME_NUMBERS_MAX) / 3;
     const bool box = frame->shape == FMB_BOX, cuboid = box || frame->shape == FMB_CUBOID;
     const size_t vertices = cuboid ? 8 : count;
     for (size_t k = 0; k < vertices; k++)

@@ -125,7 +125,8 @@ static void write_frame(struct line *line, const struct fmb_frame *frame)
 {
     double numbers[3 * FMB_HULL_VERTICES_MAX];
     bool by_vertices;
-    const size_t count = fmb_frame_numbers(frame, &by_vertices, numbers) / 3;
+    const size_t count =
+        fmb_frame_numbers(frame, &by_vertices, numbers, 3 * FMB_HULL_VERTICES_MAX) / 3;
     const char *const kind = frame->shape == FMB_HULL || by_vertices ? "hull"
                              : frame->shape == FMB_BOX               ? "box"
                              : frame->shape == FMB_CUBOID            ? "cuboid"

@@ -68,6 +68,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#if UINTPTR_MAX < 0xFFFFFFFFFFFFFFFF
+#error "libfmb needs a 64-bit machine: exact arithmetic relies on 64-bit longs"
+#endif
+
+/* The version of this header; fmb_version() returns the version of the library. Until 1.0, a new
+ * minor version may change the API and the ABI, and has its own soname, libfmb.so.MAJOR.MINOR. A
+ * new patch version changes neither, except in fmb_batch.h. Two headers are unstable: fmb_batch.h
+ * and fmb_robot.h. */
+#define FMB_VERSION_MAJOR 0
+#define FMB_VERSION_MINOR 1
+#define FMB_VERSION_PATCH 0
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -223,16 +235,19 @@ enum fmb_status fmb_frame_inflate(struct fmb_frame *frame, double radius);
 
 /* Returns the numbers that a frame was made of, without its radius.
  *
+ * In:  capacity      of numbers; FMB_FRAME_NUMBERS_MAX suffices for every shape but a hull, which
+ *                    has dim times vertex_count
  * Out: *by_vertices  whether they are its vertices, as fmb_frame_make_vertices() takes them; else
  *                    they are those of fmb_frame_make(), the first dim included. A frame that was
  *                    made of vertices has vertices only if a component is rounded; otherwise its
  *                    origin and components describe it as well.
- *      numbers       the first ones set; or NULL. A zero may have another sign. The capacity
- *                    FMB_FRAME_NUMBERS_MAX suffices for every shape but a hull, which has dim
- *                    times vertex_count.
- * Returns how many there are. A frame made of them gives the same answers, bit for bit. */
+ *      numbers       [capacity]: as many of the numbers as fit, in order. A zero may have another
+ *                    sign. May be NULL if capacity is 0
+ * Returns how many there are, also beyond the capacity. A frame made of them gives the same
+ * answers, bit for bit. */
 enum { FMB_FRAME_NUMBERS_MAX = FMB_DIM_MAX + FMB_COMPONENTS_MAX };
-size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers);
+size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers,
+                         size_t capacity);
 
 /* A rigid body: one or more frames in body coordinates. Filled by one of the functions below only;
  * it may be copied. A body of one frame may contain it; other frames belong to the caller. */

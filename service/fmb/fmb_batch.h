@@ -1,9 +1,9 @@
 /* libfmb: what scenes (fmb.h) are built from, for programs that choose the pairs themselves:
  * prepared frames, batches of pairs of frames, and trees of their boxes.
  *
- * These functions and structs may change in any version, and programs that use them have to be
- * compiled again: fmb.h is stable, this header is not. The answers have the same bits as with
- * fmb.h.
+ * This header is unstable: these functions and structs may change in any version, patch versions
+ * included, and programs that use them have to be compiled again. The answers have the same bits as
+ * with fmb.h.
  */
 #ifndef FMB_BATCH_H
 #define FMB_BATCH_H

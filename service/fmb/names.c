@@ -47,7 +47,10 @@ const char *fmb_verdict_name(int verdict)
     return NULL;
 }
 
+#define TEXT(x) #x
+#define VERSION(major, minor, patch) TEXT(major) "." TEXT(minor) "." TEXT(patch)
+
 const char *fmb_version(void)
 {
-    return FMB_VERSION;
+    return VERSION(FMB_VERSION_MAJOR, FMB_VERSION_MINOR, FMB_VERSION_PATCH);
 }

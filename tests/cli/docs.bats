@@ -133,8 +133,8 @@ none() {
         grep -vxFf "$BATS_TEST_TMPDIR/quoted" | none
 }
 
-@test "the page of changes has a section for the version of the Makefile" {
-    version=$(sed -n 's/^VERSION := //p' Makefile)
+@test "the page of changes has a section for the version of fmb.h" {
+    version=$(sed -n 's/^#define FMB_VERSION_.* //p' service/fmb/fmb.h | paste -sd.)
     [ "$version" ] && grep -q "^## $version\b" .github/CHANGELOG.md
 }
 

@@ -8,14 +8,14 @@
 static bool same_frame(const struct fmb_frame *a, const struct fmb_frame *b)
 {
     bool vertices[2];
-    const size_t count = fmb_frame_numbers(a, &vertices[0], NULL);
+    const size_t count = fmb_frame_numbers(a, &vertices[0], NULL, 0);
     if (a->dim != b->dim || a->shape != b->shape || !same_doubles(&a->radius, &b->radius, 1) ||
-        fmb_frame_numbers(b, &vertices[1], NULL) != count || vertices[0] != vertices[1])
+        fmb_frame_numbers(b, &vertices[1], NULL, 0) != count || vertices[0] != vertices[1])
         return false;
     double *numbers[2];
     for (int i = 0; i < 2; i++) {
         numbers[i] = fuzz_room(count * sizeof *numbers[i]);
-        fmb_frame_numbers(i ? b : a, &vertices[i], numbers[i]);
+        fmb_frame_numbers(i ? b : a, &vertices[i], numbers[i], count);
     }
     bool same = same_doubles(numbers[0], numbers[1], count);
     free(numbers[0]);

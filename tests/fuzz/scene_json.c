@@ -37,9 +37,9 @@ static bool finite_numbers(const double *number, int count)
 static bool is_hull(const struct fmb_frame *frame)
 {
     bool by_vertices;
-    const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL);
+    const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL, 0);
     double *number = fuzz_room(count * sizeof *number);
-    fmb_frame_numbers(frame, &by_vertices, number);
+    fmb_frame_numbers(frame, &by_vertices, number, count);
     const bool good = count > 0 && count <= (size_t) frame->dim * FMB_HULL_VERTICES_MAX &&
                       by_vertices && finite_numbers(number, (int) count);
     free(number);

@@ -7,8 +7,8 @@ set -eu
 build=$1
 headers='service/fmb/fmb.h clients/lib/fmb_client.h clients/robot/fmb_robot.h'
 
-for library in libfmb.so.0 libfmb-client.so.0 libfmb-robot.so.0; do
-    nm -D --defined-only "$build/$library" | awk -v library=$library '$2 != "A" { print library, $3 }'
+for library in libfmb libfmb-client libfmb-robot; do
+    nm -D --defined-only "$build/$library.so" | awk -v library=$library '$2 != "A" { print library, $3 }'
 done | { grep -vwF "$(sed -n 's/^[a-z].*[ *]\(fmb_[a-z_]*\)(.*/\1/p' service/fmb/fmb_batch.h)" || [ $? = 1 ]; } # 1: no line
 
 {

@@ -19,6 +19,8 @@ setup() {
     case $FMB_BUILD in *asan*) skip "libraries with sanitizers are not installed" ;; esac
     options_of_build
     root=$BATS_FILE_TMPDIR/root
+    version=$("$FMB_BUILD/fmb" --version | cut -d ' ' -f 2)
+    so=so.${version%.*}
     export PKG_CONFIG_PATH=$root/lib/pkgconfig LD_LIBRARY_PATH=$root/lib
 }
 
@@ -30,8 +32,8 @@ setup() {
     (cd "$BATS_TEST_TMPDIR" && for name in *.*; do echo "$name"; done
     for name in LICENSE fmb fmb fmb-check-path fmb-client.pc fmb-config-version.cmake fmb-config.cmake fmb-robot.pc fmb.h fmb.pc \
         fmb.py fmb_batch.h fmb_client.h fmb_flat.h fmb_robot.h fmbd fmbd fmbd.service libfmb-client.a \
-        libfmb-client.so libfmb-client.so.0 libfmb-robot.a libfmb-robot.so libfmb-robot.so.0 \
-        libfmb.a libfmb.so libfmb.so.0; do echo $name; done) |
+        libfmb-client.so libfmb-client.$so libfmb-robot.a libfmb-robot.so libfmb-robot.$so \
+        libfmb.a libfmb.so libfmb.$so; do echo $name; done) |
         sort | diff - <(find "$root" ! -type d -printf '%f\n' | sort)
 }
 
@@ -220,7 +222,7 @@ foreach(kind "" "-static")
 endforeach()
 END
     configure="cmake -S . -B out -DCMAKE_PREFIX_PATH=$root -DCMAKE_C_COMPILER=$compiler"
-    for wanted in '' 0.0.1 "$("$root/bin/fmb" --version | cut -d ' ' -f 2)"; do
+    for wanted in '' "${version%.*}" "$version"; do
         $configure -Dwanted=$wanted
     done
     cmake --build out
@@ -237,7 +239,8 @@ END
         -DCMAKE_PREFIX_PATH=$root.staged && cmake --build staged && staged/both"
     mv "$root.staged" "$root"
     [ "$status" = 0 ]
-    for wanted in 0.99 1.0; do
+    # Another minor version, earlier or later, has another ABI.
+    for wanted in 0.0.1 "${version%.*}.99" 0.99 1.0; do
         run $configure -Dwanted=$wanted
         [ "$status" != 0 ]
         [[ $output == *"requested version \"$wanted\""* ]]
@@ -257,8 +260,8 @@ END
 @test "shared libraries have a soname, and export the names of their headers only" {
     for name in fmb fmb-client fmb-robot; do
         file=$root/lib/lib$name.so
-        [ "$(readlink "$file")" = lib$name.so.0 ]
-        grep -q "SONAME *lib$name.so.0\$" <<< "$(objdump -p "$file")"
+        [ "$(readlink "$file")" = lib$name.$so ]
+        grep -q "SONAME *lib$name.$so\$" <<< "$(objdump -p "$file")"
         case $name in
         fmb) headers="$root/include/fmb.h $root/include/fmb_batch.h" ;;
         fmb-client) headers="$root/include/fmb_client.h $root/include/fmb_flat.h" ;;
@@ -268,6 +271,26 @@ END
         grep -qx "${name/-/_}_\(status_text\|read\)" "$BATS_TEST_TMPDIR/names"
         for shown in $(cat "$BATS_TEST_TMPDIR/names"); do grep -q "[ *]$shown(" $headers; done
     done
+}
+
+@test "one edit of fmb.h sets the version of everything that is built and installed" {
+    cd "$BATS_TEST_TMPDIR"
+    cp -r "$OLDPWD"/{Makefile,service,clients,msgs,.debian} .
+    mkdir tests
+    cp "$OLDPWD/tests/tests.mk" tests
+    sed -i -E '/define FMB_VERSION_/ { s/(MAJOR) .*/\1 7/; s/(MINOR) .*/\1 8/; s/(PATCH) .*/\1 9/ }' service/fmb/fmb.h
+    make -n "${options[@]}" V=1 all install deb > commands
+    for named in -soname,libfmb.so.7.8 -soname,libfmb-client.so.7.8 -soname,libfmb-robot.so.7.8 '|@VERSION@|7.8.9|' \
+        '|@SOVERSION@|7.8|' '.so.7.8"' '.debian/build.sh 7.8.9 7.8'; do grep -qF -e "$named" commands; done
+    [ -z "$(grep -F -e "so.${version%.*}" -e "$version" commands)" ]
+    # Neither the version nor a soname stands elsewhere.
+    [ -z "$(grep -rE "libfmb(-[a-z]+)?(\.so\.)?[0-9]|\b${version//./\\.}\b" Makefile .debian service clients msgs)" ]
+}
+
+@test "a machine of 32 bits is refused with a sentence" {
+    run $compiler -m32 -ffreestanding -fsyntax-only -x c service/fmb/fmb.h
+    [ "$status" != 0 ]
+    [[ $output == *'"libfmb needs a 64-bit machine: '* ]]
 }
 
 @test "the names and sizes that programs depend on are those of abi.txt" {
@@ -283,7 +306,7 @@ END
     uses_both both.c
     $compiler both.c $(pkg-config --cflags --libs fmb fmb-client) -o with_shared
     ./with_shared
-    for name in fmb fmb-client; do grep -q "lib$name.so.0 => $root/" <<< "$(ldd with_shared)"; done
+    for name in fmb fmb-client; do grep -q "lib$name.$so => $root/" <<< "$(ldd with_shared)"; done
     $compiler -shared -fPIC -DPLUGIN both.c $(pkg-config --cflags fmb-client) -o plugin.so \
         "$root/lib/libfmb-client.a" "$root/lib/libfmb.a" -llcm -lglib-2.0 -lgmp -lm
     cat > main.c << 'END'
@@ -307,7 +330,8 @@ END
     [ -x /usr/bin/python3 ] || skip "needs python3"
     folder=$root/lib/$(/usr/bin/python3 -c 'import sys; print("python%d.%d" % sys.version_info[:2])')/dist-packages
     [ "$(PYTHONPATH=$folder /usr/bin/python3 -c 'import fmb; print(fmb.version(), fmb.__file__)')" = \
-        "$("$root/bin/fmb" --version | cut -d ' ' -f 2) $folder/fmb.py" ]
+        "$version $folder/fmb.py" ]
+    [ "$(grep -c 'SONAME = "libfmb-[a-z]*\.so\.[0-9.]*"$' "$folder/fmb.py")" = 2 ]
 }
 
 # Options of make are those of options_of_build().

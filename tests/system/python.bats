@@ -30,10 +30,10 @@ setup() {
     [[ ${lines[-1]} == 'ImportError: fmb: '*'needs 0: install both'* ]]
     # The library for robots is loaded when it is first used.
     mkdir "$BATS_TEST_TMPDIR/libraries"
-    cp "$FMB_BUILD"/libfmb.so.0 "$FMB_BUILD"/libfmb-client.so.0 "$BATS_TEST_TMPDIR/libraries"
+    cp "$FMB_BUILD"/libfmb.so* "$FMB_BUILD"/libfmb-client.so* "$BATS_TEST_TMPDIR/libraries"
     LD_LIBRARY_PATH=$BATS_TEST_TMPDIR/libraries run $python -c 'import fmb; fmb.Scene([fmb.box([1, 1])]); fmb.Robot("r.urdf")'
     [ "$status" = 1 ]
-    [[ ${lines[-1]} == 'ImportError: fmb: libfmb-robot.so.0: '*LD_LIBRARY_PATH ]] || skip "the library is installed here"
+    [[ ${lines[-1]} == 'ImportError: fmb: libfmb-robot.so: '*LD_LIBRARY_PATH ]] || skip "the library is installed here"
     LD_LIBRARY_PATH='' run $python -S -c 'import fmb'
     [ "$status" = 1 ] || skip "the library is installed here"
     [[ ${lines[-1]} == 'ImportError: fmb: '*LD_LIBRARY_PATH ]]

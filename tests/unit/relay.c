@@ -370,7 +370,8 @@ const struct fmb_body *relay_change(const struct fmb_body *body, int number, dou
     double numbers[FMB_FRAME_NUMBERS_MAX];
     struct fmb_frame frame;
     bool by_vertices;
-    const size_t count = fmb_frame_numbers(fmb_body_frame(body, 0), &by_vertices, numbers);
+    const size_t count =
+        fmb_frame_numbers(fmb_body_frame(body, 0), &by_vertices, numbers, FMB_FRAME_NUMBERS_MAX);
     const int shape = (int) fmb_body_frame(body, 0)->shape;
     numbers[number] = value;
     assert_false(by_vertices);

@@ -259,7 +259,7 @@ static void the_capacity_counts_vertices(void **state)
         memset(memory, 0, sizeof memory);
         assert_non_null(cached);
         assert_int_equal(cache_counts(cache).frames, frames);
-        assert_int_equal(fmb_frame_numbers(&cached->body.one, &by_vertices, read),
+        assert_int_equal(fmb_frame_numbers(&cached->body.one, &by_vertices, read, COUNT(read)),
                          view.number_count);
         assert_memory_equal(read, vertices + i, (size_t) view.number_count * sizeof *read);
         assert_memory_equal(cached->view.bytes, bytes, view.size);

@@ -307,7 +307,7 @@ static const struct fmb_body *by_vertices(const struct fmb_body *body)
         double number[FMB_FRAME_NUMBERS_MAX];
         bool is_by_vertices;
         frame[i] = *fmb_body_frame(body, i);
-        const size_t count = fmb_frame_numbers(&frame[i], &is_by_vertices, number);
+        const size_t count = fmb_frame_numbers(&frame[i], &is_by_vertices, number, COUNT(number));
         for (int axis = 0; axis < body->dim; axis++)
             number[axis] += 1e5;
         if (frame[i].shape == FMB_TETRAHEDRON || frame[i].shape == FMB_FACE)

@@ -225,8 +225,14 @@ static void expect_numbers(const struct fmb_frame *frame, const double *given, s
     double numbers[FMB_FRAME_NUMBERS_MAX];
     struct fmb_frame again;
     bool by_vertices;
-    assert_int_equal(fmb_frame_numbers(frame, &by_vertices, NULL), count);
-    assert_int_equal(fmb_frame_numbers(frame, &by_vertices, numbers), count);
+    assert_int_equal(fmb_frame_numbers(frame, &by_vertices, NULL, 0), count);
+    for (size_t capacity = 0; capacity <= COUNT(numbers); capacity++) {
+        for (size_t k = 0; k < COUNT(numbers); k++)
+            numbers[k] = NAN;
+        assert_int_equal(fmb_frame_numbers(frame, &by_vertices, numbers, capacity), count);
+        for (size_t k = 0; k < COUNT(numbers); k++)
+            assert_int_equal(isnan(numbers[k]), k >= capacity || k >= count);
+    }
     assert_int_equal(by_vertices, frame->rounded);
     for (size_t k = 0; given && k < count; k++)
         assert_true(numbers[k] == given[k]);
@@ -271,7 +277,7 @@ static bool gives_vertices(const double vertices[9])
         return false; /* a component overflows */
     expect_numbers(&frame, frame.rounded ? vertices : NULL, 9);
     bool by_vertices;
-    fmb_frame_numbers(&frame, &by_vertices, numbers);
+    fmb_frame_numbers(&frame, &by_vertices, numbers, COUNT(numbers));
     return by_vertices;
 }
 

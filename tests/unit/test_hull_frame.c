@@ -43,8 +43,8 @@ static void hull_keeps_the_first_of_equal_vertices(void **state)
     double numbers[9];
     assert_int_equal(fmb_frame_make_hull(3, vertices, COUNT(vertices), memory, &frame), FMB_OK);
     assert_int_equal(frame.vertex_count, 3);
-    assert_int_equal(fmb_frame_numbers(&frame, &by_vertices, NULL), 9);
-    assert_int_equal(fmb_frame_numbers(&frame, &by_vertices, numbers), 9);
+    assert_int_equal(fmb_frame_numbers(&frame, &by_vertices, NULL, 0), 9);
+    assert_int_equal(fmb_frame_numbers(&frame, &by_vertices, numbers, COUNT(numbers)), 9);
     assert_true(by_vertices);
     for (int i = 0; i < 9; i++)
         assert_true(numbers[i] == distinct[i] && !signbit(numbers[i]));

@@ -243,7 +243,8 @@ static void expect_huge(const struct fmb_placement *a, const struct fmb_placemen
         const struct fmb_frame *frame = fmb_body_frame(at[f].body, 0);
         bool by_vertices;
         hull[f].count = frame->vertex_count;
-        const size_t numbers = fmb_frame_numbers(frame, &by_vertices, hull[f].vertices);
+        const size_t numbers =
+            fmb_frame_numbers(frame, &by_vertices, hull[f].vertices, COUNT(hull[f].vertices));
         for (size_t i = 0; i < numbers; i++)
             hull[f].vertices[i] *= unit;
         make_hull(frame->dim, &hull[f]);

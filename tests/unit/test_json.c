@@ -236,10 +236,10 @@ static void reads_hulls(void **state)
     double numbers[12];
     bool by_vertices;
     assert_int_equal(hull->shape, FMB_HULL);
-    assert_int_equal(fmb_frame_numbers(hull, &by_vertices, numbers), 8);
+    assert_int_equal(fmb_frame_numbers(hull, &by_vertices, numbers, COUNT(numbers)), 8);
     assert_memory_equal(numbers, distinct, sizeof distinct);
     assert_true(scene.scene.placements[0].position[0] == 1);
-    assert_int_equal(fmb_frame_numbers(point, &by_vertices, numbers), 2);
+    assert_int_equal(fmb_frame_numbers(point, &by_vertices, numbers, COUNT(numbers)), 2);
     assert_true(by_vertices && numbers[0] == 7 && numbers[1] == 8);
     scene_clear(&scene);
 }
@@ -462,13 +462,13 @@ static void assert_same_scenes(const struct owned_scene *a, const struct owned_s
                 assert_same_bits(frame->component[c], same->component[c], 3);
             double numbers[2][FMB_FRAME_NUMBERS_MAX];
             bool by_vertices;
-            const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL);
-            assert_int_equal(fmb_frame_numbers(same, &by_vertices, NULL), count);
+            const size_t count = fmb_frame_numbers(frame, &by_vertices, NULL, 0);
+            assert_int_equal(fmb_frame_numbers(same, &by_vertices, NULL, 0), count);
             assert_same_bits(&frame->radius, &same->radius, 1);
             if (count > FMB_FRAME_NUMBERS_MAX)
                 continue;
-            fmb_frame_numbers(frame, &by_vertices, numbers[0]);
-            fmb_frame_numbers(same, &by_vertices, numbers[1]);
+            fmb_frame_numbers(frame, &by_vertices, numbers[0], count);
+            fmb_frame_numbers(same, &by_vertices, numbers[1], count);
             assert_same_bits(numbers[0], numbers[1], count);
         }
     }
@@ -620,7 +620,8 @@ static void round_shapes_are_read_back(void **state)
         struct owned_scene scene = read_one(text);
         const struct fmb_frame *frame = fmb_body_frame(scene.scene.placements[0].body, 0);
         assert_true(frame->radius == cases[i].radius);
-        assert_int_equal(fmb_frame_numbers(frame, &by_vertices, numbers), cases[i].count);
+        assert_int_equal(fmb_frame_numbers(frame, &by_vertices, numbers, COUNT(numbers)),
+                         cases[i].count);
         assert_same_bits(numbers, cases[i].numbers, (size_t) cases[i].count);
         FILE *out = open_memstream(&written, &size);
         assert_non_null(out);
@@ -651,7 +652,7 @@ static void cylinders_are_enclosed(void **state)
         const struct fmb_frame *hull = fmb_body_frame(scene.scene.placements[body].body, 0);
         double numbers[3 * 32];
         bool by_vertices;
-        const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers);
+        const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers, COUNT(numbers));
         assert_int_equal(count, body ? 3 * 16 : 3 * 32);
         assert_true(hull->radius == 0);
         for (int axis = 0; axis < 3; axis++) {

@@ -455,9 +455,9 @@ static void names_groups_and_vertices_are_kept(void **state)
     assert_int_equal(scene_count_pairs(&scene), 2);
     double numbers[FMB_FRAME_NUMBERS_MAX];
     bool by_vertices;
-    assert_int_equal(
-        fmb_frame_numbers(fmb_body_frame(scene.scene.placements[1].body, 0), &by_vertices, numbers),
-        9);
+    assert_int_equal(fmb_frame_numbers(fmb_body_frame(scene.scene.placements[1].body, 0),
+                                       &by_vertices, numbers, COUNT(numbers)),
+                     9);
     assert_memory_equal(numbers, face.origin, sizeof face.origin);
     assert_memory_equal(numbers + (by_vertices ? 3 : 0), face.components, sizeof *numbers);
     scene_clear(&scene);

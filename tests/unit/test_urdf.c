@@ -156,7 +156,7 @@ static void check_resting(const struct fmb_frame *hull, const double half[3],
 {
     double numbers[6 * ENCLOSURE_SIDES_MAX];
     bool by_vertices;
-    const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers);
+    const size_t count = fmb_frame_numbers(hull, &by_vertices, numbers, COUNT(numbers));
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2) {
             double most = -INFINITY;

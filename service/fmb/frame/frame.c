@@ -409,31 +409,34 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
     return FMB_OK;
 }
 
-size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers)
+/* Returns number i of those that a frame was made of. */
+static double number_of(const struct fmb_frame *frame, size_t i)
+{
+    const size_t dim = (size_t) frame->dim, axis = i % dim;
+    const bool box = frame->shape == FMB_BOX;
+    if (frame->shape == FMB_HULL)
+        return frame->vertices[axis * frame->vertex_stride + i / dim];
+    if (i < dim)
+        return box ? frame->centre[i] : frame->origin[i];
+    const size_t k = i / dim - 1;
+    if (box)
+        return frame->component[axis][axis];
+    return frame->rounded ? difference_undo(frame->origin[axis], frame->component[k][axis],
+                                            frame->remainder[k][axis])
+                          : frame->component[k][axis];
+}
+
+size_t fmb_frame_numbers(const struct fmb_frame *frame, bool *by_vertices, double *numbers,
+                         size_t capacity)
 {
     const size_t dim = (size_t) frame->dim;
-    const bool box = frame->shape == FMB_BOX;
-    if (frame->shape == FMB_HULL) {
-        *by_vertices = true;
-        for (size_t i = 0; numbers && i < dim * frame->vertex_count; i++)
-            numbers[i] = frame->vertices[i % dim * frame->vertex_stride + i / dim];
-        return dim * frame->vertex_count;
-    }
-    *by_vertices = frame->rounded;
-    if (numbers)
-        memcpy(numbers, box ? frame->centre : frame->origin, dim * sizeof *numbers);
-    for (size_t i = 0; numbers && i < (size_t) frame->count; i++)
-        for (size_t axis = 0; axis < dim; axis++) {
-            const double c = frame->component[i][axis];
-            if (box)
-                numbers[dim + i] = frame->component[i][i];
-            else
-                numbers[dim * (1 + i) + axis] =
-                    frame->rounded
-                        ? difference_undo(frame->origin[axis], c, frame->remainder[i][axis])
-                        : c;
-        }
-    return dim + (size_t) frame->count * (box ? 1 : dim);
+    size_t vectors = frame->shape == FMB_BOX ? 2 : 1 + (size_t) frame->count;
+    if (frame->shape == FMB_HULL)
+        vectors = frame->vertex_count;
+    *by_vertices = frame->shape == FMB_HULL || frame->rounded;
+    for (size_t i = 0; i < dim * vectors && i < capacity; i++)
+        numbers[i] = number_of(frame, i);
+    return dim * vectors;
 }
 
 /* ---- Bodies ---- */
