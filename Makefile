@@ -8,7 +8,7 @@
 #   deps          all (default), programs, manual, demo, install, install-strip, uninstall, clean, help;
 #                 examples: in Java, where it is; headers, layers: what a folder may include and call;
 #                 logs, goldens: the regression logs, and the results that they are compared with;
-#                 abi: the names and sizes that programs linked with the libraries depend on
+#                 abi: the names, layouts and numbers that programs linked with the libraries depend on
 #   deps-test     test, check (all, in two builds), test-fast (one build, small samples), unit-tests;
 #                 tests, fast-tests, tested-programs, replay-set: what these build;
 #                 format, format-check; picture: that of README.md

@@ -293,12 +293,31 @@ END
     [[ $output == *'"libfmb needs a 64-bit machine: '* ]]
 }
 
-@test "the names and sizes that programs depend on are those of abi.txt" {
+@test "the names, layouts and numbers that programs depend on are those of abi.txt" {
     CC=$compiler tests/system/abi.sh "$FMB_BUILD" > "$BATS_TEST_TMPDIR/abi"
     diff tests/system/abi.txt "$BATS_TEST_TMPDIR/abi" || {
         echo "the ABI changed: where that is meant, see .github/CHANGELOG.md, then 'make abi'"
         false
     }
+}
+
+@test "what abi.txt lists differs if members, enumerators or types are exchanged" {
+    build=$(realpath "$FMB_BUILD") abi=$PWD/tests/system/abi
+    cp --parents -r service/fmb clients/lib clients/robot clients/python "$BATS_TEST_TMPDIR"
+    cd "$BATS_TEST_TMPDIR"
+    # What a sed script changes in fmb.h, and a line that must then be there.
+    while IFS='|' read -r change line; do
+        cp service/fmb/fmb.h kept.h
+        sed -i "$change" service/fmb/fmb.h
+        grep "^$line" <<< "$(CC=$compiler "$abi.sh" "$build" | diff --new-line-format=%L --unchanged-line-format= "$abi.txt" -)"
+        mv kept.h service/fmb/fmb.h
+    done << 'END'
+s/double position\[/double hold[/; s/double velocity\[/double position[/; s/double hold\[/double velocity[/|struct fmb_placement: 24 bytes at 8: velocity
+s/FMB_TETRAHEDRON = 2, FMB_FACE = 3/FMB_TETRAHEDRON = 3, FMB_FACE = 2/|FMB_FACE = 2
+s/X(BUSY, 2,/X(BUSY, 3,/; s/X(OVER_LIMIT, 3,/X(OVER_LIMIT, 2,/|FMB_BUSY = 3
+s/double duration; /float duration;/|struct fmb_scene: 4 bytes at 16: duration, float
+s/bool \*by_vertices,/int *by_vertices,/|libfmb fmb_frame_numbers .* int \*, double \*, size_t
+END
 }
 
 @test "a program runs with the shared libraries, and a plugin holds the archives" {
