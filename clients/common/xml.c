@@ -4,6 +4,7 @@
 
 #include <expat.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
@@ -97,13 +98,38 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
 static const char *remedy(enum XML_Error error)
 {
     switch (error) {
-    case XML_ERROR_MISPLACED_XML_PI: return ": move <?xml ...?> to the start of the file";
     case XML_ERROR_XML_DECL: return ": write <?xml version=\"1.0\"?>";
     case XML_ERROR_UNKNOWN_ENCODING: return ": save the file as UTF-8, and say so in <?xml ...?>";
-    case XML_ERROR_INVALID_TOKEN: return ": a stray < or &, or text that is not UTF-8";
+    case XML_ERROR_INVALID_TOKEN:
+        return ": a stray < or &, no space before an attribute, or text that is not UTF-8";
     case XML_ERROR_NO_ELEMENTS: return ": the file ends too early";
     default: return "";
     }
+}
+
+/* Returns a copy of a file with spaces in place of comments and of instructions, <? ?>, other than
+ * at the start. Thus "--" and any bytes are accepted in comments, and comments before <?xml ?>, as
+ * by the parsers of ROS, which files of robots rely on. The caller frees it. */
+static char *without_comments(const unsigned char *bytes, size_t size)
+{
+    enum { COMMENT, INSTRUCTION, CDATA, OTHER };
+    static const char *const marks[][2] = {
+        {"<!--", "-->"}, {"<?", "?>"}, {"<![CDATA[", "]]>"}, {"<", ""}};
+    char *copy = allocate(size + 1, 1), *at, *end;
+    memcpy(copy, bytes, size);
+    const char *first = copy + strspn(copy, "\xef\xbb\xbf");
+    for (at = copy; (at = memchr(at, '<', size - (size_t) (at - copy))); at = end) {
+        int kind = COMMENT;
+        while (strncmp(at, marks[kind][0], strlen(marks[kind][0])) != 0)
+            kind++;
+        if (!(end = strstr(at + strlen(marks[kind][0]), marks[kind][1])))
+            break;
+        end += strlen(marks[kind][1]);
+        if (kind == COMMENT || (kind == INSTRUCTION && at != first))
+            for (; at < end; at++)
+                *at = *at == '\n' ? '\n' : ' ';
+    }
+    return copy;
 }
 
 struct xml_element *xml_parse(const unsigned char *bytes, size_t size, struct owned_scene *memory,
@@ -114,19 +140,20 @@ struct xml_element *xml_parse(const unsigned char *bytes, size_t size, struct ow
                           .size = size,
                           .memory = memory,
                           .error = error};
-    char text[sizeof error->text];
+    char text[sizeof error->text], *copy = without_comments(bytes, size);
     if (!parse.xml)
         allocate_failed();
     *error->text = '\0';
     XML_SetUserData(parse.xml, &parse);
     XML_SetElementHandler(parse.xml, on_begin, on_end);
     XML_SetStartDoctypeDeclHandler(parse.xml, on_doctype);
-    if (XML_Parse(parse.xml, (const char *) bytes, (int) size, XML_TRUE) != XML_STATUS_OK) {
+    if (XML_Parse(parse.xml, copy, (int) size, XML_TRUE) != XML_STATUS_OK) {
         const enum XML_Error code = XML_GetErrorCode(parse.xml);
         snprintf(text, sizeof text, "%s%s", XML_ErrorString(code), remedy(code));
         stop(&parse, "XML", text);
     }
     XML_ParserFree(parse.xml);
+    free(copy);
     return *error->text ? NULL : parse.root;
 }
 

@@ -255,7 +255,9 @@ static void read_joint(struct robot *robot, const struct xml_element *node)
                          "there is no <limit>, which a joint of this type needs");
         }
         if (!(joint.limit[0] <= joint.limit[1]))
-            robot_refuse(robot, limit->line, "<limit>: lower is above upper");
+            robot_refuse(robot, limit->line,
+                         "<limit>: lower is above upper: exchange them, or make a "
+                         "joint without limits continuous");
     }
     robot->joints = allocate_grow(robot->joints, &robot->joint_capacity, robot->joint_count + 1,
                                   sizeof *robot->joints);

@@ -1042,7 +1042,7 @@ fmb: robot.urdf: line 8: joint 'ea': its parent 'e' is not a link of the file"
     joint fixed '<child link="a"/>' "joint 'j': there is no <parent>"
     joint fixed "$ends<parent link='a'/>" "joint 'j': there is a second <parent>"
     joint revolute "$ends" "joint 'j': there is no <limit>, which a joint of this type needs"
-    joint revolute "$ends<limit lower='2' upper='1'/>" "joint 'j': <limit>: lower is above upper"
+    joint revolute "$ends<limit lower='2' upper='1'/>" "joint 'j': <limit>: lower is above upper: exchange them, or make a joint without limits continuous"
     joint revolute "$ends<limit lower='' upper='1'/>" "joint 'j': <limit>: lower is empty"
     joint prismatic "$ends<axis xyz='0 0 0'/>$limit" "joint 'j': <axis>: xyz is 0"
     joint revolute "$ends$limit<mimic/>" "joint 'j': <mimic> has no joint"
@@ -1110,10 +1110,12 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
         '<robot xmlns:xacro="x"><xacro:macro name="m"/></robot>|line 1: <xacro:macro>: expand the file with xacro first' \
         '<html/>|line 1: expected <robot>, found <html>' \
         '<robot>|line 2: XML: no element found: the file ends too early' \
-        '<!-- --><?xml version="1.0"?>|line 1: XML: XML or text declaration not at start of entity: move <?xml ...?> to the start of the file' \
+        '<!-- > ---><robot>|line 2: XML: no element found: the file ends too early' \
+        '<robot><!-- a|line 1: XML: unclosed token' \
         '<?xml verison="1.0"?>|line 1: XML: XML declaration not well-formed: write <?xml version="1.0"?>' \
         '<?xml version="1.0" encoding="gb2312"?>|line 1: XML: unknown encoding: save the file as UTF-8' \
-        '<robot name="a & b"/>|line 1: XML: not well-formed (invalid token): a stray < or &, or text that is not UTF-8' \
+        '<robot name="a & b"/>|line 1: XML: not well-formed (invalid token): a stray < or &, no space before an attribute, or text that is not UTF-8' \
+        '<robot name="a"version="1"/>|line 1: XML: not well-formed (invalid token): a stray < or &, no space before an attribute' \
         '<robot></link></robot>|line 1: XML: mismatched tag' \
         '<robot name="a" name="b"/>|line 1: XML: duplicate attribute' \
         '|line 2: XML: no element found'; do
@@ -1122,6 +1124,20 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     done
     head -c 9000000 /dev/zero | tr '\0' ' ' > robot.urdf
     refused 'robot.urdf: more than 8 MB' robot.urdf
+}
+
+@test "comments contain any bytes, and precede <?xml ?>" {
+    scene robot.urdf
+    plain=$output
+    printf '\n<!-- \xe9 ------>\n<?xml version="1.0"?>\n<!---->\n<robot name="r"><gazebo><![CDATA[<!--]]></gazebo>\n' > said.urdf
+    sed '1,2d; $d' robot.urdf | sed 's/<joint/<!-- -- <link> & --><joint/' >> said.urdf
+    cp said.urdf bad.urdf
+    echo '</robot><!-- --- -->' >> said.urdf
+    scene said.urdf
+    ended 0
+    is "$plain"
+    echo '<joint/></robot>' >> bad.urdf
+    refused "bad.urdf: line $(grep -c '' bad.urdf): <joint> has no name" bad.urdf
 }
 
 # Within 1 s and 256 MB.
