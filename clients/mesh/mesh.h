@@ -49,7 +49,7 @@ struct mesh {
  * vertices and faces count from 0. */
 enum { MESH_ERROR_MAX = 256 };
 
-/* What is read of an OBJ besides triangles. */
+/* What is read besides triangles. */
 enum mesh_faces {
     MESH_TRIANGLES, /* nothing: the mesh is refused */
     MESH_POLYGONS   /* faces of more vertices, as a fan of triangles, which has the same hull */

@@ -17,7 +17,8 @@
 enum {
     BYTES_MAX = 1 << 28, /* of the file; twice as many may be read, where instances repeat them */
     VISIT_BYTES = 64,    /* counted for each element that is read */
-    DEPTH_MAX = 256      /* of nodes */
+    DEPTH_MAX = 256,     /* of nodes */
+    KINDS = 6            /* of elements that others refer to */
 };
 
 /* Maps x to row[i][0] x[0] + row[i][1] x[1] + row[i][2] x[2] + row[i][3]. */
@@ -33,9 +34,9 @@ struct numbers {
 
 struct dae {
     struct mesh_build build;
-    struct owned_scene memory;      /* of the elements */
-    struct xml_element *root, *ids; /* ids: a table */
-    size_t bytes;                   /* read, with repetitions */
+    struct owned_scene memory;             /* of the elements */
+    struct xml_element *root, *ids[KINDS]; /* ids: tables */
+    size_t bytes;                          /* read, with repetitions */
     struct numbers numbers, sizes;
     /* The vertices of the last primitive, in the same instance of a geometry. */
     const struct xml_element *vertices; /* NULL: there was none */
@@ -44,7 +45,19 @@ struct dae {
 
 #define refuse(dae, element, ...) mesh_refuse((dae)->build.source, (element)->begin, __VA_ARGS__)
 
-/* Makes the tree of elements, and the table of their ids. */
+/* Returns the table of the ids of a kind, which files repeat in elements of another; NULL: nothing
+ * refers to this kind. */
+static struct xml_element **ids_of(struct dae *dae, const char *kind)
+{
+    static const char *const kinds[KINDS] = {"float_array", "source", "vertices",
+                                             "geometry",    "node",   "visual_scene"};
+    size_t i = 0;
+    while (i < KINDS && strcmp(kinds[i], kind) != 0)
+        i++;
+    return i < KINDS ? &dae->ids[i] : NULL;
+}
+
+/* Makes the tree of elements, and the tables of their ids. */
 static bool parse(struct dae *dae)
 {
     struct mesh_source *source = dae->build.source;
@@ -57,13 +70,14 @@ static bool parse(struct dae *dae)
         return mesh_refuse(source, error.at, "%s", error.text);
     for (struct xml_element *element = dae->root; element; element = xml_next(element)) {
         const char *id = xml_attribute(element, "id");
-        if (!id)
+        struct xml_element **ids = id ? ids_of(dae, element->name) : NULL;
+        if (!ids)
             continue;
-        HASH_FIND_STR(dae->ids, id, other);
+        HASH_FIND_STR(*ids, id, other);
         if (other)
             other->repeated = true;
         else
-            HASH_ADD_KEYPTR(hh, dae->ids, id, strlen(id), element);
+            HASH_ADD_KEYPTR(hh, *ids, id, strlen(id), element);
     }
     return true;
 }
@@ -101,8 +115,8 @@ static struct xml_element *refer(struct dae *dae, const struct xml_element *from
     const char *url = xml_attribute(from, name);
     struct xml_element *found = NULL;
     if (url && *url == '#')
-        HASH_FIND_STR(dae->ids, url + 1, found);
-    if (found && xml_is(found, kind) && !found->repeated)
+        HASH_FIND_STR(*ids_of(dae, kind), url + 1, found);
+    if (found && !found->repeated)
         return found;
     refuse(dae, from, "<%s>: its %s is not the id of one <%s> in this file", from->name, name,
            kind);
@@ -209,20 +223,14 @@ struct set {
 /* Adds the faces of a polygon. */
 static bool add_polygon(struct dae *dae, const struct set *set, const double *index, size_t count)
 {
-    const bool triangles = xml_is(set->element, "triangles");
-    unsigned corner[3] = {0};
-    if (count < 3 || (count > 3 && !triangles && dae->build.source->faces == MESH_TRIANGLES))
-        return refuse(dae, set->p, "a face of %zu vertices: %s", count,
-                      count > 3 ? "triangulate it first" : "remove it first");
+    if (!mesh_check_face(dae->build.source, set->p->begin, count))
+        return false;
     for (size_t n = 0; n < count; n++) {
         const double next = index[set->stride * n + set->offset];
         if (!(next >= 0 && next < (double) dae->count && next == floor(next)))
             return refuse(dae, set->p, "index %g is no vertex: there are %zu, from 0 on", next,
                           dae->count);
-        if (n >= 3)
-            corner[1] = corner[2];
-        corner[n < 3 ? n : 2] = (unsigned) (dae->first + (size_t) next);
-        if (n >= 2 && !mesh_add_face(&dae->build, corner))
+        if (!mesh_add_corner(&dae->build, n, (unsigned) (dae->first + (size_t) next)))
             return false;
     }
     return true;
@@ -357,11 +365,12 @@ static bool transform(struct dae *dae, const struct xml_element *element, struct
                       dae->numbers.count, counts[kind]);
     if (kind == 0 && (x[12] != 0 || x[13] != 0 || x[14] != 0 || x[15] != 1))
         return refuse(dae, element, "<matrix>: its last row is not 0 0 0 1");
-    if (kind == 1 && x[0] == 0 && x[1] == 0 && x[2] == 0)
+    const bool no_axis = kind == 1 && x[0] == 0 && x[1] == 0 && x[2] == 0;
+    if (no_axis && x[3] != 0)
         return refuse(dae, element, "<rotate>: its axis is 0");
     if (kind == 0)
         memcpy(n, x, sizeof n);
-    else if (kind == 1)
+    else if (kind == 1 && !no_axis)
         rotate(x, n);
     for (int i = 0; i < 3 && kind > 1; i++)
         n[kind == 2 ? 4 * i + 3 : 5 * i] = x[i];
@@ -419,7 +428,8 @@ bool mesh_dae(struct mesh_source *source, struct mesh *out)
     struct dae dae = {.build = {.source = source, .mesh = out}};
     source->text = true;
     const bool good = parse(&dae) && read_scene(&dae, out);
-    HASH_CLEAR(hh, dae.ids);
+    for (int i = 0; i < KINDS; i++)
+        HASH_CLEAR(hh, dae.ids[i]);
     free(dae.numbers.number);
     free(dae.sizes.number);
     scene_clear(&dae.memory);

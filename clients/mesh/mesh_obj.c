@@ -186,7 +186,6 @@ static bool read_face(struct obj *obj)
     struct mesh_source *source = obj->build.source;
     const unsigned char *begin = source->at;
     char text[MESH_WORD_MAX];
-    unsigned corner[3];
     size_t count = 0;
     for (; has_word(source); count++) {
         int64_t index;
@@ -195,20 +194,11 @@ static bool read_face(struct obj *obj)
         if (!end || !ends_word(source, end))
             return mesh_refuse(source, source->at, "'%s' is no corner of a face",
                                mesh_word(source, source->at, text));
-        if (!take_index(obj, index, &next))
+        if (!take_index(obj, index, &next) || !mesh_add_corner(&obj->build, count, next))
             return false;
-        if (count >= 3 && source->faces == MESH_POLYGONS) {
-            if (!mesh_add_face(&obj->build, corner))
-                return false;
-            corner[1] = corner[2];
-        }
-        corner[count < 3 ? count : 2] = next;
         source->at = end;
     }
-    if (count < 3 || (count > 3 && source->faces == MESH_TRIANGLES))
-        return mesh_refuse(source, begin, "a face of %zu vertices: %s", count,
-                           count > 3 ? "triangulate it first" : "remove it first");
-    return mesh_add_face(&obj->build, corner);
+    return mesh_check_face(source, begin, count);
 }
 
 static void add_object(struct obj *obj)

@@ -44,6 +44,7 @@ struct element {
 
 struct ply {
     struct mesh_source *source;
+    struct mesh_build build; /* of faces; there is memory for as many as the header states */
     enum format format;
     bool has_format;
     size_t element_count, property_count, vertex_count;
@@ -332,28 +333,29 @@ static bool read_value(struct ply *ply, enum type type, double *value)
     return true;
 }
 
-/* Reads a list: the indices of a triangle; or any list, which is skipped, where corner is NULL.
- * Each value takes at least a byte, so a false length ends with the file. */
-static bool read_list(struct ply *ply, const struct property *property, unsigned *corner)
+/* Reads a list: the indices of a face; or another one, which is skipped. Each value takes at least
+ * a byte, so a false length ends with the file. */
+static bool read_list(struct ply *ply, const struct property *property)
 {
+    const bool face = property->role == INDICES;
     double length, index;
     if (!read_value(ply, property->count, &length))
         return false;
     if (!(length >= 0 && length <= UINT32_MAX && length == floor(length)))
         return mesh_refuse(ply->source, ply->value_at, "a list of %.10g values", length);
-    if (corner && length != 3)
-        return mesh_refuse(ply->source, ply->value_at, "a face of %.0f vertices: %s", length,
-                           length > 3 ? "triangulate it first" : "remove it first");
+    if (face && !mesh_check_face(ply->source, ply->value_at, (size_t) length))
+        return false;
     for (uint32_t i = 0; i < (uint32_t) length; i++) {
         if (!read_value(ply, property->type, &index))
             return false;
-        if (!corner)
+        if (!face)
             continue;
         if (!(index >= 0 && index < (double) ply->vertex_count && index == floor(index)))
             return mesh_refuse(ply->source, ply->value_at,
                                "index %.10g is no vertex: there are %zu, counted from 0", index,
                                ply->vertex_count);
-        corner[i] = (unsigned) index;
+        if (!mesh_add_corner(&ply->build, i, (unsigned) index))
+            return false;
     }
     return true;
 }
@@ -363,7 +365,7 @@ static bool read_property(struct ply *ply, const struct property *property, stru
     const size_t index = ply->source->index;
     double value;
     if (property->count != NONE)
-        return read_list(ply, property, property->role == INDICES ? out->face[index] : NULL);
+        return read_list(ply, property);
     if (!read_value(ply, property->type, &value))
         return false;
     if (property->role == UNUSED)
@@ -419,7 +421,7 @@ static bool allocate_element(struct ply *ply, const struct element *element, str
         out->vertex_count = element->count;
     } else {
         memory = out->face = calloc(element->count, sizeof *out->face);
-        out->face_count = element->count;
+        ply->build.face_capacity = element->count;
     }
     return memory || mesh_refuse(ply->source, element->line, "there is no memory for %zu %s",
                                  element->count, vertices ? "vertices" : "faces");
@@ -438,7 +440,7 @@ static bool read_end(struct mesh_source *source)
 
 bool mesh_ply(struct mesh_source *source, struct mesh *out)
 {
-    struct ply ply = {.source = source};
+    struct ply ply = {.source = source, .build = {.source = source, .mesh = out}};
     if (!read_header(&ply))
         return false;
     for (size_t i = 0; i < ply.element_count; i++)

@@ -105,3 +105,18 @@ bool mesh_add_face(struct mesh_build *build, const unsigned corner[3])
     memcpy(mesh->face[mesh->face_count++], corner, sizeof *mesh->face);
     return true;
 }
+
+bool mesh_add_corner(struct mesh_build *build, size_t n, unsigned vertex)
+{
+    if (n >= 3)
+        build->corner[1] = build->corner[2];
+    build->corner[n < 3 ? n : 2] = vertex;
+    return n < 2 || mesh_add_face(build, build->corner);
+}
+
+bool mesh_check_face(struct mesh_source *source, const unsigned char *where, size_t count)
+{
+    return count == 3 || (count > 3 && source->faces == MESH_POLYGONS) ||
+           mesh_refuse(source, where, "a face of %zu vertices: %s", count,
+                       count > 3 ? "triangulate it first" : "remove it first");
+}

@@ -28,12 +28,19 @@ struct mesh_build {
     struct mesh_source *source;
     struct mesh *mesh;
     size_t vertex_capacity, face_capacity;
+    unsigned corner[3]; /* of mesh_add_corner() */
 };
 
 /* Append an element. Return false, with the error, if there are too many. Exit with status 1 if
  * memory is exhausted. */
 bool mesh_add_vertex(struct mesh_build *build, const double position[3]);
 bool mesh_add_face(struct mesh_build *build, const unsigned corner[3]);
+
+/* Adds corner n of a polygon, counted from 0: from the third one on, a triangle of a fan. */
+bool mesh_add_corner(struct mesh_build *build, size_t n, unsigned vertex);
+
+/* Returns false, with the error, if a face of so many vertices is not read. where: of the error. */
+bool mesh_check_face(struct mesh_source *source, const unsigned char *where, size_t count);
 
 /* Sets the error, with the place of `where`. format: as of printf(). Returns false. */
 bool mesh_refuse(struct mesh_source *source, const unsigned char *where, const char *format, ...)

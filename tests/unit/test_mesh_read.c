@@ -365,6 +365,17 @@ static void bad_ply_bodies_are_refused(void **state)
                    "line 6");
 }
 
+static void polygons_of_ply_are_read(void **state)
+{
+    static const char text[] = VERTICES("ascii", "4") FACES("2") "0 0 0\n1 0 0.1\n0 1 -1e-3\n"
+                                                                 "1 1 5e22\n4 0 1 3 2\n3 3 2 1\n";
+    static const unsigned fans[][3] = {{0, 1, 3}, {0, 3, 2}, {3, 2, 1}};
+    char error[MESH_ERROR_MAX];
+    struct mesh mesh;
+    assert_true(mesh_parse(text, sizeof text - 1, "", MESH_POLYGONS, &mesh, error));
+    expect_mesh(mesh, 4, square, 3, fans);
+}
+
 static void expect_refused_bytes(const char *header, const char *bytes, size_t size,
                                  const char *place)
 {
@@ -685,7 +696,8 @@ static void nodes_of_collada_are_placed(void **state)
         "<triangles count='1'>" DAE_VERTEX
         "<p>0 1 0</p></triangles></mesh></geometry>"
         "</library_geometries>" DAE_SCENE(
-            "<node><translate>10 20 30</translate><instance_node url='#n'/></node>"
+            "<node id='s'><translate>10 20 30</translate><rotate>0 0 0 0</rotate>"
+            "<instance_node url='#n'/></node>" /* ids are those of a kind */
             "<node><matrix>0 1 0 1 1 0 0 2 0 0 -1 3 0 0 0 1</matrix>"
             "<scale>1 1 2</scale><instance_geometry url='#g'/></node>"
             "<node><instance_node url='#n'/></node>");
@@ -783,7 +795,7 @@ static void bad_collada_is_refused(void **state)
         {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|\n"
          "<accessor source='#b' count='3' stride='3'/>",
          "line 4"},
-        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array><extra id='a'/>|\n"
+        {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array><float_array id='a'/>|\n"
          "<accessor source='#a' count='3' stride='3'/>",
          "line 4"},
         {"<float_array id='a' count='9'>0 0 0 1 0 0 0 1 0</float_array>|", "line 3"},
@@ -1031,6 +1043,7 @@ int main(void)
         cmocka_unit_test(bad_stl_of_bytes_is_refused),
         cmocka_unit_test(obj_is_read),
         cmocka_unit_test(bad_obj_is_refused),
+        cmocka_unit_test(polygons_of_ply_are_read),
         cmocka_unit_test(collada_is_read),
         cmocka_unit_test(nodes_of_collada_are_placed),
         cmocka_unit_test(bad_collada_is_refused),
