@@ -341,10 +341,11 @@ $(O)/clients/page/page.o: flags += -DPAGE_FILE='"build/page/page.html"'
 url = $(subst ?,%3F,$(subst #,%23,$(subst $() ,%20,$(subst %,%25,$1))))
 .PHONY: picture
 picture: $(B)/fmb
-	$(B)/fmb query --local --html build/table.html clients/demo/table.json > build/table.said
+	$(B)/fmb scene clients/demo/robot/robot.urdf --joints-csv clients/demo/robot/path.csv \
+		--with clients/demo/robot/world.json | $(B)/fmb query --local --html build/robot.html > build/robot.txt
 	chromium --headless --no-sandbox --enable-unsafe-swiftshader --use-angle=swiftshader --hide-scrollbars \
-		--window-size=1100,620 --virtual-time-budget=3000 --screenshot=clients/demo/table.png \
-		"file://$(call url,$(CURDIR))/build/table.html#t=1.95"
+		--window-size=1100,620 --virtual-time-budget=3000 --screenshot=clients/demo/robot.png \
+		"file://$(call url,$(CURDIR))/build/robot.html#t=1.6"
 
 # ---- The manual: what --help prints ----
 
@@ -481,7 +482,7 @@ packages_deps := gcc libc6-dev liblcm-dev liblcm-bin libcjson-dev libexpat1-dev 
 	libglib2.0-dev libseccomp-dev zlib1g-dev pkg-config uthash-dev libjs-three
 packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format lld libclang-rt-dev \
 	liblcm-java default-jdk-headless chromium libxml2-utils g++ cmake man-db \
-	gnuplot-nox python3 python3-numpy python3-pandas python3-matplotlib
+	gnuplot-nox python3 python3-numpy python3-pandas
 packages_deps-bench := $(packages_deps) g++ jq libccd-dev libfcl-dev libbullet-dev \
 	libcgal-dev libmpfr-dev
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-dev lld llvm afl++

@@ -365,15 +365,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
         counts '.queries == 0 and .exit == 2'
         [[ $stderr == *'there are no queries of this service from --from to --to; '* ]]
     done
-    # The recipe of the documentation: parts without queries do not count.
-    recipe=$(sed -n "/^jq -s '{queries/,/}'/{s/^jq -s '//;s/}' parts$/}/;p}" "$BATS_TEST_DIRNAME/../../clients/README.md")
-    for from in 0 0.1 1000; do
-        "$FMB" replay --json --from $from --to "$(jq -n "$from + 0.1")" arm.log 2> said || [ $from = 1000 ]
-    done > parts
-    [ "$(jq -s "$recipe | .exit" parts)" = 0 ]
-    [ "$(tail -n 1 parts | jq -s "$recipe | .exit")" = 2 ]
-    [ "$(jq 'if .queries == 0 then .events = 0 else . end' parts | jq -s "$recipe | .exit")" = 2 ] # it was not read
-    [ "$(jq '.exit = 1' parts | jq -s "$recipe | .exit")" = 1 ]
 }
 
 # bats test_tags=release

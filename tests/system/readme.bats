@@ -55,29 +55,8 @@ prints_what_it_shows() {
 }
 
 @test "the commands of the README print what it shows" {
-    prints_what_it_shows README.md 15
-    # The curve has the six steps, whose points have the same size.
-    [ "$(grep -c "^.*<use xlink:href='#gpPt0' transform=" "$FMB_BUILD/path.svg")" = 7 ]
-    grep -q '](clients/demo/table.png)' README.md
-}
-
-@test "the lines of Python in the README draw the clearance of its path" {
-    python=/usr/bin/python3
-    mkdir "$BATS_TEST_TMPDIR/build"
-    "$FMB" query --local --gap --csv clients/demo/arm.json > "$BATS_TEST_TMPDIR/build/path.csv"
-    sed -n '/^import pandas$/,/^```$/p' README.md | grep -v '^```' > "$BATS_TEST_TMPDIR/plot.py"
-    (
-        cd "$BATS_TEST_TMPDIR"
-        MPLBACKEND=agg MPLCONFIGDIR=. $python plot.py
-    )
-    [ "$(head -c 4 "$BATS_TEST_TMPDIR/build/path.png" | tail -c 3)" = PNG ]
-    # What pandas makes of it is what jq makes of JSON, but for the last bits that pandas reads.
-    (
-        cd "$BATS_TEST_TMPDIR"
-        $python -c "$(head -n 2 plot.py); print([float(gap) for gap in steps.gap_low.min()])"
-    ) | jq -e --slurpfile json <("$FMB" query --local --gap --json clients/demo/arm.json) \
-        '[., [$json[] | [.pairs[].gap[0]] | min]] | transpose | length == 6 and
-            all(.[]; .[0] - .[1] | fabs < 1e-15)'
+    prints_what_it_shows README.md 6
+    grep -q '](clients/demo/robot.png)' README.md
 }
 
 @test "the commands of the page of the service print what it shows" {
@@ -85,7 +64,9 @@ prints_what_it_shows() {
 }
 
 @test "the commands of the page of the clients print what it shows" {
-    prints_what_it_shows clients/README.md 5
+    prints_what_it_shows clients/README.md 12
+    # The curve has the six steps, whose points have the same size.
+    [ "$(grep -c "^.*<use xlink:href='#gpPt0' transform=" "$FMB_BUILD/path.svg")" = 7 ]
 }
 
 @test "the commands of the page of robots print what it shows" {
@@ -98,11 +79,8 @@ prints_what_it_shows() {
     [ "$found" = "$(tr ' ' '\n' <<< "$pages" | sort)" ]
 }
 
-@test "the lines of C in the README are those of an example, which prints what it states" {
+@test "the example in C of the README prints what it states" {
     example=clients/examples/scene.c
-    sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | tr -s ' \n' ' ' > "$BATS_TEST_TMPDIR/shown"
-    [ -s "$BATS_TEST_TMPDIR/shown" ]
-    [[ "$(tr -s ' \n' ' ' < $example)" == *"$(cat "$BATS_TEST_TMPDIR/shown")"* ]]
     includes='-Iservice/fmb -Iclients/lib -Imsgs/codec'
     gcc -std=c99 -Wall -Wextra -Werror $includes $example "$FMB_BUILD/libfmb-client.a" \
         "$FMB_BUILD/libfmb.a" -llcm -lglib-2.0 -lgmp -lm -o "$BATS_TEST_TMPDIR/scene"
