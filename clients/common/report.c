@@ -35,8 +35,7 @@ static void begin_table(struct report_rows *rows)
     char duration[NUMBER_TEXT_MAX], pairs[NUMBER_TEXT_MAX];
     rows->begun = true;
     rows->printer.columns = columns_for(rows->scene);
-    fprintf(rows->printer.out, "%sscene %" PRId64, rows->scenes > rows->apart + 1 ? "\n" : "",
-            rows->scenes);
+    fprintf(rows->printer.out, "%sscene %" PRId64, rows->shown ? "\n" : "", rows->scenes);
     if (scene->label) {
         fputs(" (", rows->printer.out);
         escape_text(rows->printer.out, scene->label);
@@ -91,7 +90,8 @@ void report_end_scene(struct report_rows *rows)
     } else if (rows->printer.form == REPORT_TABLE && rows->begun) {
         end_table(rows);
     }
-    rows->apart += !rows->begun;
+    rows->shown = rows->shown || rows->begun;
+    rows->summary.count += rows->count[rows->summary.all] > 0;
     fflush(rows->printer.out);
 }
 
@@ -113,6 +113,29 @@ static struct report_row row_of(const struct report_rows *rows, const struct fmb
     };
 }
 
+static void copy_name(const struct fmb_placement *body, char out[QUERY_NAME_MAX + 1])
+{
+    if (body->name)
+        snprintf(out, QUERY_NAME_MAX + 1, "%s", body->name);
+    else
+        snprintf(out, QUERY_NAME_MAX + 1, "%" PRId64, body->id);
+}
+
+static void note_answer(struct report_rows *rows, const struct fmb_client_answer *of)
+{
+    struct report_summary *summary = &rows->summary;
+    const struct fmb_scene *scene = &rows->scene->scene;
+    if (of->answer.has_gap)
+        summary->gap = fmin(summary->gap, of->answer.gap.bounds[1]);
+    if (of->answer.verdict <= summary->all)
+        return;
+    *summary = (struct report_summary){
+        .all = of->answer.verdict, .first = rows->scenes, .gap = summary->gap};
+    snprintf(summary->label, sizeof summary->label, "%s", scene->label ? scene->label : "");
+    copy_name(&scene->placements[of->a], summary->names[0]);
+    copy_name(&scene->placements[of->b], summary->names[1]);
+}
+
 void report_pair(struct report_rows *rows, const struct fmb_client_answer *of)
 {
     const bool near = report_is_near(rows->scene->scene.margin, &of->answer);
@@ -120,6 +143,7 @@ void report_pair(struct report_rows *rows, const struct fmb_client_answer *of)
     const struct report_row row = row_of(rows, of);
     rows->count[of->answer.verdict]++;
     rows->near += near;
+    note_answer(rows, of);
     if (apart && rows->contacts)
         return;
     if (apart && rows->printer.form == REPORT_TABLE && !rows->all &&
@@ -132,22 +156,43 @@ void report_pair(struct report_rows *rows, const struct fmb_client_answer *of)
     report_row_print(&rows->printer, 0, &row);
 }
 
+/* ---- The line about all scenes ---- */
+
 void report_end(const struct report_rows *rows)
 {
-    char apart[NUMBER_TEXT_MAX], scenes[NUMBER_TEXT_MAX];
-    if (rows->printer.form != REPORT_TABLE || rows->apart == 0)
+    const struct report_summary *summary = &rows->summary;
+    char count[2][NUMBER_TEXT_MAX], gap[NUMBER_TEXT_MAX];
+    FILE *out = rows->printer.out;
+    const bool met = summary->all > FMB_SEPARATED;
+    if (rows->printer.form != REPORT_TABLE || rows->scenes == 0 ||
+        (rows->scenes == 1 && rows->shown))
         return;
-    if (rows->scenes == 1)
-        fputs("no contacts\n", rows->printer.out);
-    else
-        fprintf(rows->printer.out, "%sno contacts in %s of %s scenes\n",
-                rows->apart < rows->scenes ? "\n" : "", number_grouped(rows->apart, apart),
-                number_grouped(rows->scenes, scenes));
+    fputs(rows->shown ? "\n" : "", out);
+    fputs(met ? fmb_verdict_name((int) summary->all) : "no contact", out);
+    if (rows->scenes > 1 && met)
+        fprintf(out, " in %s of %s scenes, first in scene %" PRId64,
+                number_grouped(summary->count, count[0]), number_grouped(rows->scenes, count[1]),
+                summary->first);
+    else if (rows->scenes > 1)
+        fprintf(out, " in %s scenes", number_grouped(rows->scenes, count[1]));
+    if (met && *summary->label) {
+        fputs(" (", out);
+        escape_text(out, summary->label);
+        putc(')', out);
+    }
+    for (int k = 0; k < 2 && met; k++) {
+        fputs(k ? " and " : ": ", out);
+        escape_text(out, summary->names[k]);
+    }
+    if (summary->gap < INFINITY)
+        fprintf(out, "; least gap %s", number_short(summary->gap, gap));
+    putc('\n', out);
 }
 
 void report_begin(struct report_rows *rows)
 {
     rows->printer.json = (struct json_writer){.out = rows->printer.out};
+    rows->summary.gap = INFINITY;
     if (rows->printer.form == REPORT_CSV)
         report_csv_begin(rows->printer.out);
 }

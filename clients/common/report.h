@@ -5,6 +5,7 @@
 #include "fmb_client.h"
 #include "json_write.h"
 #include "number.h"
+#include "query.h"
 #include "scene.h"
 
 #include <stdio.h>
@@ -105,6 +106,14 @@ void report_row_print(struct report_printer *printer, int indent, const struct r
 /* Most rows of separated pairs that are not near in the table of a scene, unless all are wanted. */
 enum { REPORT_SEPARATED_MAX = 20 };
 
+/* What the last line says of all scenes. */
+struct report_summary {
+    enum fmb_verdict all; /* the strongest; 0: none */
+    int64_t count, first; /* scenes that have it, and the first of them */
+    char label[QUERY_NAME_MAX + 1], names[2][QUERY_NAME_MAX + 1]; /* of the first, and its pair */
+    double gap;                                                   /* least upper bound */
+};
+
 /* Prints the rows of scenes, which are numbered from 1: one line of JSON for each, {"label": ...,
  * "pairs": [...]}; or CSV; or tables, each with counts at its end. Numbers in tables have six
  * digits, or more where the ends of an interval would have the same digits. Flushed at the end of
@@ -116,10 +125,11 @@ struct report_rows {
     bool contacts, all;            /* rows: no separated pairs but near ones; in tables all */
     /* Private. */
     struct owned_scene *scene;
-    int64_t scenes, apart; /* apart: the scenes without a row, if only contacts are wanted */
-    bool begun;            /* the table of the scene has begun */
+    int64_t scenes;
+    bool begun, shown; /* the table of the scene has begun; that of an earlier one had */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
     uint64_t near, left_out;             /* of those separated */
+    struct report_summary summary;
 };
 
 /* For CSV, writes the column names. In: the members of rows that the caller sets. */
@@ -130,8 +140,8 @@ void report_begin_scene(struct report_rows *rows, struct owned_scene *scene);
 void report_pair(struct report_rows *rows, const struct fmb_client_answer *answer);
 void report_end_scene(struct report_rows *rows);
 
-/* To be called after the last scene. If only contacts are wanted, a scene without one has no table;
- * this prints how many there are. */
+/* To be called after the last scene. After tables of several scenes, and where no scene had a
+ * table, prints how many scenes have a contact and the first of them. */
 void report_end(const struct report_rows *rows);
 
 #endif

@@ -289,10 +289,16 @@ row() {
     ended 0
     [ "$(grep -c '^scene ' <<< "$output")" = 2 ]
     [[ "${lines[0]}" = 'scene 2: '* ]]
-    [ "${lines[-1]}" = 'no contacts in 3 of 5 scenes' ]
+    [ "${lines[-1]}" = 'overlapping in 2 of 5 scenes, first in scene 2: 1 and 2' ]
     run "$FMB" query --local --contacts <<< "$apart"
     ended 0
-    [ "$output" = 'no contacts' ]
+    [ "$output" = 'no contact' ]
+    run "$FMB" query --local --gap <<< "$apart ${apart/9,0/4,0}"
+    [ "${lines[-1]}" = 'no contact in 2 scenes; least gap 3' ]
+    apart=${apart/'"dim"'/'"label": "home", "dim"'}
+    apart=${apart/'"id": 2'/'"id": 2, "name": "post"'}
+    run "$FMB" query --local --gap <<< "$apart ${apart/9,0/1,0} ${apart/9,0/0.5,0} ${apart/9,0/0.25,0}"
+    [ "${lines[-1]}" = 'overlapping in 2 of 4 scenes, first in scene 3 (home): 1 and post; least gap -0.75' ]
     # A pair that could not be decided is one to look at.
     query '{"dim": 2, "bodies": [
         {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[1,0]]},
