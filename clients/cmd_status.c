@@ -17,6 +17,9 @@ static const char usage[] =
     "Waits for the next heartbeat of the service, which comes once a second, and\n"
     "prints it.\n"
     "\n"
+    "A service that has sent a heartbeat receives queries: scripts that start it wait\n"
+    "with this command.\n"
+    "\n"
     "  --json               as one line of JSON\n"
     "  --timeout SECONDS    longest time to wait (3)\n" ARGS_COMMON_USAGE
     "\n"
