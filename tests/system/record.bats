@@ -325,12 +325,14 @@ END
     for traffic in 'publish FMB_PAIR_QUERY' 'feed FMB_SCENE_QUERY'; do
         start_record --force --duration 30 "$log"
         "${traffic% *}_until_it_ends" &
-        started="$started $!"
+        sender=$!
+        started="$started $sender"
         wait_until has_events "${traffic#* }" "$log" 1000
         truncate -s 0 "$log"
         code=0
         wait "$record" || code=$?
         [ $code = 1 ]
+        wait "$sender" || true
         grep -qx "fmb: $log: deleted or truncated by another program" "$messages"
         # What was being written in that moment may be there.
         grep -qE '  no damage|: empty' <<< "$("$FMB" log info "$log")"

@@ -23,7 +23,11 @@ stop_fmbd() {
 }
 
 teardown() {
-    for pid in ${started-}; do kill -KILL "$pid" 2> /dev/null || true; done
+    # A function in the background has processes of its own.
+    for pid in ${started-}; do
+        # shellcheck disable=SC2046
+        kill -KILL $(cat "/proc/$pid/task/$pid/children" 2> /dev/null) "$pid" 2> /dev/null || true
+    done
 }
 
 # start_record [OPTIONS] FILE: records until finish_record. The pid is in $record, what it says in

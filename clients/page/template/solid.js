@@ -57,7 +57,7 @@ function hullOf(corners) {
     for (const face of new THREE.ConvexHull().setFromPoints([...points, ...tips]).faces) {
         const sides = [0, 1, 2].map((i) => face.getEdge(i));
         triangles.push(sides.map((side) => index.get(side.head().point)));
-        edges.push(...sides.filter((side) => side.twin.face.normal.dot(face.normal) < 0.9998) /* not flat */
+        edges.push(...sides.filter((side) => side.twin.face.normal.dot(face.normal) < 0.94) /* by more than 20 degrees */
             .map((side) => [index.get(side.tail().point), index.get(side.head().point)]).filter(([a, b]) => a < b));
     }
     return { corners, triangles: triangles.filter((ends) => !ends.includes(undefined)), edges };
