@@ -342,7 +342,7 @@ url = $(subst ?,%3F,$(subst #,%23,$(subst $() ,%20,$(subst %,%25,$1))))
 .PHONY: picture
 picture: $(B)/fmb
 	$(B)/fmb scene clients/demo/robot/robot.urdf --joints-csv clients/demo/robot/path.csv \
-		--with clients/demo/robot/world.json | $(B)/fmb query --local --html build/robot.html > build/robot.txt
+		--with clients/demo/robot/world.json --ignore base,table | $(B)/fmb query --local --html build/robot.html > build/robot.txt
 	chromium --headless --no-sandbox --enable-unsafe-swiftshader --use-angle=swiftshader --hide-scrollbars \
 		--window-size=1100,620 --virtual-time-budget=3000 --screenshot=clients/demo/robot.png \
 		"file://$(call url,$(CURDIR))/build/robot.html#t=1.6"
