@@ -3,6 +3,7 @@
 #include "escape.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* The columns of bodies are wide enough for all from the first row on. */
