@@ -24,11 +24,10 @@ explain() {
     echo "$build/fmbd &"
     echo "$build/fmb query --box $out/mine.json"
     robot=$(dirname "$0")/robot
-    say "a URDF robot with meshes, on a path: where it overlaps its surroundings"
-    echo "$build/fmb scene $robot/robot.urdf --joints-csv $robot/path.csv --with $robot/world.json |"
-    echo "    $build/fmb query --local --contacts"
-    "$build/fmb" scene "$robot/robot.urdf" --joints-csv "$robot/path.csv" --with "$robot/world.json" |
-        "$build/fmb" query --local --contacts | grep -e '^scene' -e '  overlapping'
+    say "a URDF robot with meshes, on a path: what it meets between the rows of its table"
+    set -- path "$robot/robot.urdf" --joints-csv "$robot/path.csv" --with "$robot/world.json" --ignore base,table
+    echo "$build/fmb $*"
+    "$build/fmb" "$@"
     say "--json for programs, --html FILE for a page; $build/fmb query --help says more"
 }
 
