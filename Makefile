@@ -15,7 +15,8 @@
 #   deps-bench    bench, bench-bus, bench-commands; speed-error: the picture of what accuracy measured;
 #                 accuracy, depth, checked, hull-poses, soak: campaigns that take longer
 #   deps-fuzz     fuzz, fuzz-afl, fuzz-merge, fuzzers
-#   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root)
+#   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root);
+#                 release: tarball, packages and their sums, into build/release
 #   deps-aarch64  aarch64: fmb for AArch64, which 'make test' then emulates
 #
 # Variables:
@@ -69,7 +70,9 @@ quiet := $(if $(V),,@)
 
 # ---- Flags ----
 
-mode_flags_release := -O2 -g1 -DNDEBUG
+# What names the folder of the build for debuggers is relative, also where the linker optimises.
+mode_link_release := -ffile-prefix-map='$(subst ','\'',$(CURDIR))'=.
+mode_flags_release := -O2 -g1 -DNDEBUG $(mode_link_release)
 mode_flags_debug := -O0 -g3
 ifeq ($(MODE)$(findstring clang,$(compiler)),asan)
 $(error MODE=asan needs clang, not $(CC): leave out CC)
@@ -471,6 +474,20 @@ deb:
 	.debian/build.sh $(VERSION) $(SOVERSION)
 deb-test: deb programs
 	FMB_BUILD=$(B) bats --tap tests/deb/deb.bats
+
+# What is published, of the last commit: the packages are built from the tarball.
+.PHONY: release
+released := fmb-$(VERSION)
+release:
+	@grep -q '^## $(VERSION) ([0-9-]*)$$' .github/CHANGELOG.md || { \
+		echo 'make $@: .github/CHANGELOG.md has no section "## $(VERSION) (DATE)"' >&2; exit 1; }
+	@git diff --quiet HEAD || { echo 'make $@: there are changes that are not committed' >&2; exit 1; }
+	rm -rf build/release
+	mkdir -p build/release
+	git archive --prefix=$(released)/ -o build/release/$(released).tar.gz HEAD
+	tar -xzf build/release/$(released).tar.gz -C build/release
+	$(MAKE) -C build/release/$(released) deb
+	cd build/release && mv $(released)/build/deb/*.deb . && rm -r $(released) && sha256sum *.tar.gz *.deb > SHA256SUMS
 
 .PHONY: clean
 clean:

@@ -21,7 +21,9 @@ done
 sed -n '/^Permission/,$ { s/^$/./; s/^/ /; p }' LICENSE >> "$copy/debian/copyright"
 {
     printf 'fmb (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n' "$version"
-    printf -- ' -- %s  %s\n' "$(sed -n 's/^Maintainer: //p' .debian/control)" "$(git log -1 --format=%aD 2> /dev/null || date -R)"
+    # The time of the last commit, which is that of all files of a tarball.
+    time=$(git log -1 --format=%ct -- . 2> /dev/null) || time=
+    printf -- ' -- %s  %s\n' "$(sed -n 's/^Maintainer: //p' .debian/control)" "$(date -uRd "@${time:-$(stat -c %Y Makefile)}")"
 } > "$copy/debian/changelog"
 cd "$copy"
 dpkg-buildpackage -b -us -uc

@@ -42,6 +42,11 @@ get() {
     grep -q '^ExecStart="/usr/bin/fmbd"$' "$root/lib/systemd/system/fmbd.service"
     [ -z "$(find "$root/etc/systemd" -name 'fmbd*')" ]
     inside fmb-check-path --help > /dev/null
+    for file in fmb/README.md fmb/CHANGELOG.md fmb/examples/table.json fmb/examples/robot/robot.urdf; do
+        [ "$(find "$root/usr/share/doc/$file"* -type f)" ]
+    done
+    grep -q 'Copyright: .*FMB' "$root/usr/share/doc/fmb/copyright"
+    for name in 'three.js authors' 'Troy D. Hanson' BSD-1-Clause; do grep -qF "$name" "$root/usr/share/doc/fmb/copyright"; done
     for file in man1/fmb-log-cut.1 man1/fmb-check-path.1 man8/fmbd.8; do [ -f "$root/usr/share/man/$file.gz" ]; done
     # Programs of the bus alone need LCM.
     ! inside dpkg-query -W 'libfmb[0-9]*'
@@ -53,6 +58,9 @@ get() {
         gcc -std=c99 /fmb/clients/examples/scene.c $(pkg-config --cflags fmb-client) -Wl,-Bstatic -lfmb-client -lfmb \
             -Wl,-Bdynamic -llcm -lglib-2.0 -lgmp -lm -o static'
     [ "$(inside /shared)" = "$(inside /static)" ]
+    for file in msgs/README.md CHANGELOG.md examples/scene.c; do
+        [ "$(find "$root/usr/share/doc/libfmb-dev/$file"* -type f)" ]
+    done
     printf '#include <fmb_robot.h>\nint main(void) { struct fmb_robot *r; return fmb_robot_read("/fmb/clients/demo/robot/robot.urdf", 0, &r); }\n' > "$root/robot.c"
     inside sh -c 'gcc robot.c $(pkg-config --cflags --libs fmb-robot) -o robot && ./robot'
     inside apt-get purge -q -y libfmb-dev

@@ -287,6 +287,40 @@ END
     [ -z "$(grep -rE "libfmb(-[a-z]+)?(\.so\.)?[0-9]|\b${version//./\\.}\b" Makefile .debian service clients msgs)" ]
 }
 
+@test "a release is the tarball of the last commit, the packages of it, and their sums" {
+    cd "$BATS_TEST_TMPDIR"
+    mkdir -p tree/.github tree/service/fmb tree/.debian tree/tests
+    cp "$OLDPWD/Makefile" tree
+    cp "$OLDPWD/tests/tests.mk" tree/tests
+    cp "$OLDPWD/service/fmb/fmb.h" tree/service/fmb
+    # Stands for the one of Debian: a package of the file that was committed.
+    printf '#!/bin/sh\nmkdir -p build/deb\ncp content build/deb/fmb_$1.deb\n' > tree/.debian/build.sh
+    chmod +x tree/.debian/build.sh
+    echo "## $version (not released yet)" > tree/.github/CHANGELOG.md
+    echo build > tree/.gitignore
+    echo committed > tree/content
+    cd tree
+    git init -q
+    commit() { git add -A && git -c user.name=a -c user.email=a@b commit -q -m "$1"; }
+    commit first
+    run make release
+    [ "$status" != 0 ]
+    [[ $output == *"has no section \"## $version (DATE)\""* ]]
+    echo "## $version (2030-01-31)" > .github/CHANGELOG.md
+    run make release
+    [ "$status" != 0 ]
+    [[ $output == *"not committed"* ]]
+    commit second
+    echo other > untracked
+    make release
+    cd build/release
+    [ "$(echo *)" = "SHA256SUMS fmb-$version.tar.gz fmb_$version.deb" ]
+    sha256sum -c SHA256SUMS
+    [ "$(wc -l < SHA256SUMS)" = 2 ]
+    [ "$(cat "fmb_$version.deb")" = committed ]
+    [ "$(tar -tzf "fmb-$version.tar.gz" | grep -c 'content$\|untracked$')" = 1 ]
+}
+
 @test "a machine of 32 bits is refused with a sentence" {
     run $compiler -m32 -ffreestanding -fsyntax-only -x c service/fmb/fmb.h
     [ "$status" != 0 ]
