@@ -70,7 +70,7 @@ static const char usage[] =
     "differences\n" ARGS_COMMON_USAGE
     "\n"
     "With --bus a running fmbd answers, many queries at a time, under a new client\n"
-    "id. Bodies that it does not hold are sent first. SIGINT ends the replay with\n"
+    "id. Bodies that it does not hold are sent whole. SIGINT ends the replay with\n"
     "what was answered so far.\n"
     "\n"
     "Not compared, but counted: results that say the service was busy or did not hold\n"

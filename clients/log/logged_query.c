@@ -44,6 +44,42 @@ bool logged_status_is_transient(int32_t status)
     return status == FMB_BUSY || status == FMB_UNKNOWN_BODY;
 }
 
+static bool is_whole(const struct logged_query *query)
+{
+    const struct scene_query *scene = &query->scene;
+    for (int32_t i = 0; i < query->placement_count; i++)
+        if (query->placement[i].body.dim > FMB_DIM_MAX ||
+            query->placement[i].placed.orientation_count > QUERY_ORIENTATION_MAX ||
+            query->placement[i].velocity_count > FMB_DIM_MAX ||
+            query->placement[i].placed.end_count >
+                query->placement[i].body.dim + QUERY_ORIENTATION_MAX)
+            return false;
+    return query->kind == LOG_PAIR_QUERY || (scene->placement_count <= QUERY_PLACEMENTS_MAX &&
+                                             scene->index_count <= 2 * QUERY_PAIRS_MAX &&
+                                             scene->ignored_count <= 2 * QUERY_PAIRS_MAX);
+}
+
+static size_t bytes_of(const struct logged_query *query)
+{
+    const bool pair = query->kind == LOG_PAIR_QUERY;
+    size_t bytes =
+        pair ? WIRE_PAIR_QUERY_BYTES : WIRE_SCENE_QUERY_BYTES + wire_text_bytes(query->scene.label);
+    for (int32_t i = 0; i < query->placement_count; i++)
+        bytes += wire_placement_bytes(&query->placement[i]);
+    if (!pair)
+        bytes += WIRE_PAIR_BYTES / 2 *
+                 ((size_t) query->scene.index_count + (size_t) query->scene.ignored_count);
+    return bytes;
+}
+
+size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX])
+{
+    if (!is_whole(query) || bytes_of(query) > QUERY_BYTES_MAX)
+        return 0;
+    return query->kind == LOG_PAIR_QUERY ? wire_write_pair_query(&query->pair, out)
+                                         : wire_write_scene_query(&query->scene, out);
+}
+
 /* ---- As a scene: bodies ---- */
 
 const struct fmb_body *body_of_view(const struct body_view *view, struct owned_scene *out)

@@ -42,6 +42,10 @@ const char *logged_result_read(struct logged_result *out, enum log_kind kind, co
  * a body. */
 bool logged_status_is_transient(int32_t status);
 
+/* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
+ * does not hold all of it. */
+size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX]);
+
 struct owned_scene;
 
 /* Converts a query to a scene (scene.h) with the same bodies, and the same pairs in the same order.

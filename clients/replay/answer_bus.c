@@ -221,6 +221,7 @@ void answer_bus_query(struct answer_bus *bus, struct match_item *item, const uns
         bus->begun_at = clock_ns();
     if (!wait_for_capacity(bus, largest))
         return;
+    bus->counts.whole += item->sent_whole;
     send(bus, item, false, bytes, size, largest);
 }
 

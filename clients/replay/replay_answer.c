@@ -47,7 +47,7 @@ static void take_answer(struct replay *replay, const struct match_item *query,
 bool replay_on_answered(void *user, struct match_item *query, const struct new_result *answered)
 {
     struct replay *replay = user;
-    const bool is_last = answered->status != FMB_UNKNOWN_BODY || query->supplied;
+    const bool is_last = answered->status != FMB_UNKNOWN_BODY || query->sent_whole;
     struct new_result taken = *answered;
     taken.not_held = answered->status == FMB_UNKNOWN_BODY && query->defined;
     if (is_last)
@@ -57,8 +57,9 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     return is_last;
 }
 
-/* Sends the bodies of a query ahead of it, as many in one scene query as fit, except those that a
- * service refuses. A service caches bodies with an id only. */
+/* Sends the bodies of a query that has no space for their frames ahead of it, as many in one scene
+ * query as fit. The query itself then names them by handle. A service caches bodies with an id
+ * only. */
 static void supply_service(struct replay *replay, struct match_item *query)
 {
     const struct query_placement *placement = replay->query.placement;
@@ -68,24 +69,24 @@ static void supply_service(struct replay *replay, struct match_item *query)
         size_t size = WIRE_SCENE_QUERY_BYTES;
         supply->which = FMB_PAIRS_LISTED; /* none */
         for (supply->placement_count = 0; next < count; next++) {
-            const int64_t id = placement[next].placed.id;
-            const struct query_placement whole = {.placed.id = id ? id : 1,
-                                                  .body = placement[next].body};
-            if (query_by_handle(&whole) || !scene_takes(&whole.body))
+            struct query_placement whole = placement[next];
+            if (query_by_handle(&whole))
                 continue;
             size += wire_placement_bytes(&whole);
             if (size > QUERY_BYTES_MAX)
                 break;
+            whole.placed.id = whole.placed.id ? whole.placed.id : 1;
             supply->placement[supply->placement_count++] = whole;
         }
         if (supply->placement_count == 0)
             return; /* no body is left, or a single one is too long */
-        answer_bus_supply(replay->bus, query, replay->supply_bytes,
-                          (uint32_t) wire_write_scene_query(supply, replay->supply_bytes));
+        answer_bus_supply(replay->bus, query, replay->whole,
+                          (uint32_t) wire_write_scene_query(supply, replay->whole));
     }
 }
 
-/* Sends queries again after the service lacked one of their bodies, and these bodies first. */
+/* Sends queries again after the service lacked one of their bodies. Handles without a definition
+ * are left unchanged. */
 static void send_again(struct replay *replay)
 {
     for (struct match_item *query; (query = g_queue_pop_head(&replay->again));) {
@@ -94,9 +95,14 @@ static void send_again(struct replay *replay)
                                &replay->query))
             continue;
         query->defined = definitions_fill(replay->definitions, &replay->query) < 0;
-        query->supplied = true;
-        supply_service(replay, query);
-        answer_bus_query(replay->bus, query, replay->query_bytes, query_size);
+        const size_t size = logged_query_write(&replay->query, replay->whole);
+        query->sent_whole = true;
+        if (size > 0) {
+            answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
+        } else {
+            supply_service(replay, query);
+            answer_bus_query(replay->bus, query, replay->query_bytes, query_size);
+        }
     }
 }
 

@@ -105,6 +105,7 @@ static void write_bus(struct json_writer *json, const struct tally_bus *bus)
     json_integer(json, "answered", bus->answered);
     json_integer(json, "ns", bus->ns);
     json_integer(json, "sent_again", bus->resent);
+    json_integer(json, "sent_whole", bus->whole);
     json_integer(json, "not_sent", bus->not_sent);
     json_integer(json, "supplied", bus->supplied);
     json_integer(json, "services", bus->services);

@@ -8,12 +8,13 @@
  *   2. pair_queries()   numbers the clients of the replayed logs by first appearance, and the
  *                       queries of a client within their group (type, label, first pair; for
  *                       pairs, the ids of both bodies). Repeated queries, with the same ids,
- *                       are one. Then it numbers those of the golden log in the same way:
- *                       equal numbers are a pair. A golden log without queries has only the
- *                       types of its results: then the group is the type, on both sides
+ *                       are one, with several times. Then it numbers those of the golden log
+ *                       in the same way: equal numbers are a pair. A golden log without
+ *                       queries has only the types of its results: then the group is the
+ *                       type, on both sides
  *   3. rename_results() gives each golden result the key of the query that its own query is paired
- *                       with, so that match_all() matches it as if it were recorded with that
- *                       query. Results of a repeat keep its time, and are matched by their order */
+ *                       with, of a repeated one that of the same repeat, so that match_all()
+ *                       matches it as if it were recorded with that query */
 #include "replay_parts.h"
 
 #include "keyed_hash.h"
@@ -25,22 +26,25 @@
 enum pair_kind {
     PAIR_CLIENT, /* a client: its id */
     PAIR_IDS,    /* a query, or a result without queries: kind, client id, sequence number */
+    PAIR_TIME,   /* another time at which it was sent: the same, and the time */
+    PAIR_SENT,   /* a query of the replayed logs: the same, and the number of another time */
     PAIR_GROUP,  /* the queries of a client and group: number of the client, group */
     PAIR_QUERY   /* a query of the replayed logs: numbers of client and query, group */
 };
 
 struct pair_key {
     int64_t kind, golden; /* enum pair_kind; 1: of the golden log */
-    int64_t number[3];
+    int64_t number[4];
     struct handle group;
 };
 
 struct pair_entry {
     struct pair_key key;
-    int64_t count;            /* CLIENT: its number, from 1, or MATCHED; GROUP: of queries */
+    /* CLIENT: its number, from 1, or MATCHED; TIME: its number, from 2; GROUP: of queries, IDS: of
+     * times. */
+    int64_t count;
     int64_t utime;            /* IDS: the first time */
-    struct match_item *query; /* QUERY: the query; IDS of the golden log: its counterpart */
-    bool is_known;            /* IDS: the query has come */
+    struct match_item *query; /* QUERY, SENT: the query; IDS of the golden log: its counterpart */
     UT_hash_handle hh;
 };
 
@@ -70,11 +74,18 @@ static struct pair_entry *client_of(struct pairing *pairing, bool golden, int64_
     return entry_of(pairing, (struct pair_key){PAIR_CLIENT, golden, {client_id}, {{0}}});
 }
 
+/* last: 0 of IDS; of TIME the time, of SENT its number. */
+static struct pair_entry *entry_of_ids(struct pairing *pairing, enum pair_kind what, bool golden,
+                                       const struct match_key *key, int64_t last)
+{
+    const int64_t client_id = key->client_id, number = key->sequence_number;
+    return entry_of(pairing,
+                    (struct pair_key){what, golden, {key->kind, client_id, number, last}, {{0}}});
+}
+
 static struct pair_entry *ids_of(struct pairing *pairing, bool golden, const struct match_key *key)
 {
-    return entry_of(
-        pairing, (struct pair_key){
-                     PAIR_IDS, golden, {key->kind, key->client_id, key->sequence_number}, {{0}}});
+    return entry_of_ids(pairing, PAIR_IDS, golden, key, 0);
 }
 
 static void note_matched(struct pairing *pairing)
@@ -86,11 +97,10 @@ static void note_matched(struct pairing *pairing)
 }
 
 /* The group of a query; NULL: of results without queries. A label is in a query of at most
- * QUERY_BYTES_MAX, whose other fields are longer than the numbers: replay->supply_bytes holds both.
- */
+ * QUERY_BYTES_MAX, whose other fields are longer than the numbers: replay->whole holds both. */
 static struct handle group_of(struct replay *replay, int64_t kind, const struct logged_query *query)
 {
-    unsigned char *out = replay->supply_bytes;
+    unsigned char *out = replay->whole;
     const char *label = "";
     int64_t number[3] = {kind};
     if (query && kind == LOG_PAIR_QUERY) {
@@ -105,6 +115,21 @@ static struct handle group_of(struct replay *replay, int64_t kind, const struct 
     return hasher_handle(replay->hasher, out, sizeof number + strlen(label));
 }
 
+/* Numbers the times at which a query was sent again. */
+static void add_repeat(struct pairing *pairing, struct match_item *item, bool golden,
+                       struct pair_entry *ids)
+{
+    const struct match_key *key = &item->key;
+    if (key->utime == ids->utime)
+        return;
+    struct pair_entry *time = entry_of_ids(pairing, PAIR_TIME, golden, key, key->utime);
+    if (time->count > 0)
+        return;
+    time->count = ++ids->count;
+    if (!golden)
+        entry_of_ids(pairing, PAIR_SENT, false, key, time->count)->query = item;
+}
+
 static void pair_item(struct pairing *pairing, struct match_item *item, bool golden, bool by_type)
 {
     struct replay *replay = pairing->replay;
@@ -113,9 +138,11 @@ static void pair_item(struct pairing *pairing, struct match_item *item, bool gol
     if (item->unreadable || client->count == MATCHED)
         return;
     struct pair_entry *ids = ids_of(pairing, golden, &item->key);
-    if (ids->is_known)
+    if (ids->count > 0) {
+        add_repeat(pairing, item, golden, ids);
         return;
-    ids->is_known = true;
+    }
+    ids->count = 1;
     ids->utime = item->key.utime;
     if (!by_type && !replay_read_query(replay, &replay->rereader, item, replay->query_bytes, &size,
                                        &replay->query))
@@ -165,11 +192,17 @@ static void rename_results(struct pairing *pairing)
         if (!item->is_result || item->other)
             continue;
         const struct pair_entry *ids = ids_of(pairing, true, &item->key);
-        const int64_t utime = item->key.utime;
         if (!ids->query)
             continue;
-        item->key = ids->query->key;
-        item->key.utime = utime == ids->utime ? item->key.utime : utime;
+        const struct match_item *query = ids->query;
+        if (item->key.utime != ids->utime) {
+            const int64_t number =
+                entry_of_ids(pairing, PAIR_TIME, true, &item->key, item->key.utime)->count;
+            const struct pair_entry *sent =
+                entry_of_ids(pairing, PAIR_SENT, false, &query->key, number);
+            query = sent->query ? sent->query : query;
+        }
+        item->key = query->key;
         item->by_order = true;
     }
 }

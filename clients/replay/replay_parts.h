@@ -36,14 +36,14 @@ struct replay {
     struct local_answerer *local;
     struct answer_bus *bus; /* NULL: this process answers */
     int64_t not_sent;       /* queries that this process answered */
-    GQueue again;           /* items of queries to be sent again, after their bodies */
+    GQueue again;           /* items of queries to be sent with the frames of their bodies */
 
     struct logged_query query;
     struct scene_query supply; /* without pairs */
     /* Buffers for messages read again: a query to be answered, and a result that a callback reads
      * meanwhile. */
     unsigned char query_bytes[LOG_DATA_MAX], result_bytes[LOG_DATA_MAX];
-    unsigned char supply_bytes[QUERY_BYTES_MAX];
+    unsigned char whole[QUERY_BYTES_MAX]; /* a query to be sent with the frames of its bodies */
     /* The comparison in progress: its query, as in the log and decoded, and both results. */
     const struct match_item *item;
     struct logged_query compared;

@@ -281,6 +281,7 @@ static void print_bus(FILE *out, const struct tally_bus *bus)
         const char *one, *more;
     } counts[] = {
         {bus->resent, "sent again", "sent again"},
+        {bus->whole, "sent once more with frames", "sent once more with frames"},
         {bus->not_sent, "that cannot be sent", "that cannot be sent"},
         {bus->supplied, "more that carried bodies", "more that carried bodies"},
         {bus->services > 1 ? bus->services - 1 : 0, "change of the service",

@@ -41,6 +41,7 @@ struct tally_bus {
     int64_t answered;  /* queries of the log answered */
     int64_t ns;        /* from the first query to the last answer, nanoseconds */
     int64_t resent;    /* queries sent again for lack of an answer */
+    int64_t whole;     /* queries sent again with frames that the service did not hold */
     int64_t not_sent;  /* queries too long for a datagram, or with ids out of range */
     int64_t supplied;  /* extra queries that only carried bodies to the service */
     int64_t services;  /* changes of the service that answers, the first one included */

@@ -168,7 +168,7 @@ event() {
 }
 
 # bats test_tags=release
-@test "bodies that the service does not hold are sent before the queries that need them" {
+@test "bodies that the service does not hold are sent whole" {
     generate --blast pairs 3000 --by-handle handles.log
     generate clients clients.log
     generate crowd crowd.log
@@ -182,7 +182,7 @@ event() {
     [ $(($(status_of hits) - before)) -ge 3000 ]
     stop_fmbd
     start_fmbd --frames 2
-    as_in_process handles.log -- '.bus.supplied > 0 and .same == 3000'
+    as_in_process handles.log -- '.bus.sent_whole > 0 and .same == 3000'
     stop_fmbd
 }
 
