@@ -36,8 +36,8 @@ static const char usage[] =
     "  --channel REGEX      also record the channels whose whole name matches\n"
     "  --all                record all channels\n" ARGS_COMMON_USAGE
     "\n"
-    "When it receives, it prints 'recording to FILE': scripts wait for this line before\n"
-    "they publish.\n"
+    "When it receives, it prints 'recording to FILE': scripts wait for this line\n"
+    "before they publish.\n"
     "\n"
     "Each file also defines the bodies that its queries name by handle, and names\n"
     "them. Definitions that no message contains are requested from the service.\n"

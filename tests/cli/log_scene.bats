@@ -194,7 +194,7 @@ u32() {
     said 'a result, whose query is not here'
     scene 1 "$log" --event 258
     said 'event 258: longer than its fields'
-    other=$("$TOOLS/events" "$log" | awk '$3 == "FMB_STATUS" { print NR - 1; exit }')
+    other=$("$TOOLS/events" "$log" | awk '$3 == "FMB_STATUS" && !found++ { print NR - 1 }')
     scene 1 "$log" --event "$other"
     said 'neither a query nor a result of this service (--prefix chooses it)'
     scene 2 "$T/nothing.log" --event 0
