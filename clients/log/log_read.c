@@ -27,8 +27,11 @@
  * so, the second ends a buffer after the beginning of the first. So the total number of bytes read
  * is a small multiple of the file size, for hostile files too.
  *
+ * Holes of sparse files contain no sync word, and searches skip them.
+ *
  * Changes. Another program may change the file while it is read. So lengths are never read from the
  * file again after they were checked. */
+#define _GNU_SOURCE /* SEEK_DATA */
 #define _FILE_OFFSET_BITS 64
 #include "log_read.h"
 
@@ -175,6 +178,16 @@ static bool is_followed(struct log_reader *reader, int64_t end)
 
 /* ---- Searches. After an error they end at once, without a result ----------------------------- */
 
+/* The first position from offset on that is not in a hole, or last. The caller reads there in any
+ * case, which detects truncation. */
+static int64_t skip_hole(const struct log_reader *reader, int64_t offset, int64_t last)
+{
+    const off_t data = lseek(reader->fd, (off_t) offset, SEEK_DATA);
+    if (data >= 0)
+        return least(data, last);
+    return errno == ENXIO ? last : offset; /* only holes follow; or the file system does not know */
+}
+
 /* The first sync word that begins before end, or end. In: at least SYNC_BYTES - 1 bytes after end
  * are readable. */
 static const unsigned char *find_sync(const unsigned char *bytes, const unsigned char *end)
@@ -193,8 +206,11 @@ static int64_t find_candidate(struct log_reader *reader, int64_t offset)
     const int64_t last = reader->size - LOG_HEADER_BYTES;
     struct lengths lengths;
     while (offset <= last) {
-        if (!buffer(reader, offset, LOG_HEADER_BYTES))
-            break;
+        if (!is_buffered(reader, offset, LOG_HEADER_BYTES)) {
+            offset = skip_hole(reader, offset, last);
+            if (!fill(reader, offset))
+                break;
+        }
         const unsigned char *bytes = buffered(reader, offset);
         const unsigned char *end = reader->bytes + reader->used - LOG_HEADER_BYTES + 1;
         const unsigned char *sync = find_sync(bytes, end);
