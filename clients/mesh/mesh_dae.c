@@ -46,11 +46,11 @@ struct dae {
 #define refuse(dae, element, ...) mesh_refuse((dae)->build.source, (element)->begin, __VA_ARGS__)
 
 /* Returns the table of the ids of a kind, which files repeat in elements of another; NULL: nothing
- * refers to this kind. */
+ * refers to this kind. Nodes, which files may repeat millions of times, come first. */
 static struct xml_element **ids_of(struct dae *dae, const char *kind)
 {
-    static const char *const kinds[KINDS] = {"float_array", "source", "vertices",
-                                             "geometry",    "node",   "visual_scene"};
+    static const char *const kinds[KINDS] = {"node",     "float_array", "source",
+                                             "vertices", "geometry",    "visual_scene"};
     size_t i = 0;
     while (i < KINDS && strcmp(kinds[i], kind) != 0)
         i++;
