@@ -623,30 +623,30 @@ _EDGE_VERDICTS = (None, "free", "near", "contact", "undecided")
 
 
 class Edge(NamedTuple):
-    """What was found on one edge of a path, the way from one row to the next."""
+    """The result for one edge of a path. An edge is the motion from one row to the next."""
 
-    #: "free": all pairs are at least `clearance` apart at all times; "near": no contact, but not the clearance that
-    #: was asked for; "contact"; "undecided": neither could be proven
+    #: "free": all pairs are at least `clearance` apart at all times; "near": no contact, but some pair is closer than
+    #: the required clearance; "contact"; "undecided": neither a contact nor its absence could be proven
     verdict: str
-    #: Fractions of the edge, 0 to 1. Contact: the first is between these; undecided: before these, the edge is
-    #: free; near: of `closest`; free: the whole edge
+    #: A part of the edge, as fractions from 0 to 1. Contact: contains the first contact. Undecided: the edge is free
+    #: before this part. Near: the time of `closest`. Free: the whole edge
     at: tuple[float, float]
     clearance: float  #: proven lower bound of the least gap, if free or near; else 0. Infinite if there are no pairs
-    closest: float  #: upper bound of the least gap: the least one that was found
-    pair: Optional[tuple[int, int]]  #: indices in the scene: of the contact, or of `closest`
+    closest: float  #: upper bound of the least gap, from the times examined; infinite if none was
+    pair: Optional[tuple[int, int]]  #: indices in the scene: the pair in contact or undecided, else of `closest`
     names: Optional[tuple[Optional[str], Optional[str]]]  #: of this pair
 
 
 class Path(tuple):
-    """The answers for a path: a tuple of Edge. edge[k] is the way from row k to row k + 1.
+    """The answers for a path: a tuple of Edge. path[k] is the edge from row k to row k + 1.
 
     verdict: "contact" if an edge has one, else "near", else "undecided", else "free"
-    clearance: proven of the whole path; 0 if there is a contact, or an edge is undecided
-    joint_error: if all joints are off by less, radians or lengths, the path is free nevertheless
+    clearance: proven for the whole path; 0 if there is a contact, or an edge is undecided
+    joint_error: the path stays free of contact if every joint is off by less than this (radians or lengths)
     pairs: number of pairs of bodies that were tested on each edge
-    touches: (a, b, verdict) of pairs that meet and do not move relative to each other. Those that
-        overlap are a contact on the whole path
-    names: of all bodies, by index
+    touches: (a, b, verdict) for each pair that meets and does not move relative to each other. If
+        such a pair overlaps, the verdict of the path is "contact"
+    names: names of all bodies, by index
     """
 
     def __new__(cls, edges: Iterable[Edge], touches: Iterable[Any], scene: Scene, pairs: int, lever: float) -> Path:
@@ -1170,14 +1170,14 @@ class Robot(_Handle):
             _lib.fmb_flat_take(scene._handle, placements, moved)
 
     def check_path(self, rows: Any, world: Optional[Scene] = None, clearance: Optional[float] = None) -> Path:
-        """Proves that the robot meets nothing on its way from each row to the next, at all times. Between
-        rows, the value of each joint changes linearly. clients/robot/PATHS.md says what is proven.
+        """Proves that the robot meets nothing, at all times, between consecutive rows. Between two rows,
+        the value of each joint changes linearly. clients/robot/PATHS.md says what is proven.
 
-        rows: (n, len(joints)), values of the joints; or a table or dict with a column for each of them,
-            by name. Limits are not checked. A path of one row is one pose
+        rows: joint values: an array (n, len(joints)), or a table or dict with a column for each
+            joint, by name. Limits are not checked. A single row is a path of one pose
         world: as for scene(); its bodies must be at rest
-        clearance: to be proven; None: the margin of the world. 0: none, and the clearance of each edge is found
-            to within a tenth
+        clearance: the clearance to prove; None: the margin of the world. 0: none is required, and the
+            clearance of each edge is found to within a tenth
         """
         values = self._rows(rows)
         scene = self.scene(world)

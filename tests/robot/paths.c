@@ -1,6 +1,6 @@
-/* A seven-joint arm, whose links are hulls, moves among turned boxes. Each edge changes every joint
- * by 0.5 rad; those that are timed come within 9 to 11 mm of something. What FCL is
- * given for an edge is 50 poses, whose kinematics is not timed. */
+/* A seven-joint arm, whose links are hulls, moves among rotated boxes. Each edge changes every
+ * joint by 0.5 rad. The least gap of each timed edge is 9 to 11 mm. FCL decides 50 poses of an
+ * edge; the computation of these poses is not timed. */
 #include "paths.h"
 
 #include "draw.h"
@@ -27,7 +27,7 @@ static void fail(const char *why)
 /* ---- The arm ---- */
 
 struct arm {
-    struct robot *states; /* bodies; poses of the arm for FCL */
+    struct robot *states; /* the bodies, and the poses of an edge for FCL */
     struct fmb_body box[CROWD];
     struct fmb_placement crowd[CROWD];
     struct fmb_robot *robot;
@@ -35,7 +35,8 @@ struct arm {
     struct draw draw;
 };
 
-/* A URDF file of links without bodies, except the base, which is far below: hulls are carried. */
+/* Reads a URDF file whose links have no bodies, except the base, which is far below. The hulls are
+ * bodies of the world that the links carry. */
 static struct fmb_robot *read_arm(void)
 {
     char path[] = "/tmp/robot-XXXXXX";
@@ -62,7 +63,7 @@ static struct fmb_robot *read_arm(void)
     return robot;
 }
 
-/* Boxes in a hall of 7 m, smaller than those of the states, so that edges are free. */
+/* Boxes in a cube of 7 m. They are smaller than the boxes of states.c, so that edges are free. */
 static struct fmb_scene draw_crowd(struct arm *arm, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -163,7 +164,7 @@ static void sample(const struct arm *arm, const struct edge *edge)
     }
 }
 
-/* Returns in how many poses anything collides. */
+/* Returns the number of poses in which anything collides. */
 static int decide_samples(struct fcl_robot *fcl)
 {
     int poses = 0;
@@ -172,7 +173,7 @@ static int decide_samples(struct fcl_robot *fcl)
     return poses;
 }
 
-/* Random edges: how many have a contact, and which of these FCL's poses show. */
+/* Random edges: prints how many are in contact, and how many contacts the poses of FCL miss. */
 static void find_contacts(const struct arm *arm, struct fcl_robot *fcl)
 {
     int count[FMB_ROBOT_UNDECIDED + 1] = {0}, missed = 0, wrong = 0;
@@ -202,7 +203,7 @@ enum { PROVEN, FOUND, SAMPLED, WAYS };
 static const char *const ways[] = {"proven to 5 mm", "clearance found to a tenth",
                                    "FCL, 50 poses (not proven)"};
 
-/* Out: the median times of an edge, in microseconds. fcl: NULL where it is not measured. */
+/* Out: *median: the median times of an edge, in microseconds. fcl: NULL if it is not measured. */
 static void time_edges(struct arm *arm, struct fcl_robot *fcl, double median[WAYS])
 {
     static double time[WAYS][EDGES];

@@ -1,6 +1,6 @@
-/* States of a robot among obstacles, neighbours ignored: 30 links of 16 frames and 100 boxes, or 8
- * links and 100 obstacles, each a hull of 152 and 102 vertices, at random poses with a few
- * contacts; or an arm of hulls and boxes whose poses are set by others. */
+/* States of a robot among obstacles, at random poses with a few contacts: 30 links of 16 frames and
+ * 100 boxes, or 8 links, hulls of 152 vertices, and 100 obstacles, hulls of 102. Or an arm of hulls
+ * among boxes, whose poses the caller sets. Pairs of neighbouring links are ignored. */
 #ifndef STATES_H
 #define STATES_H
 
@@ -8,18 +8,18 @@
 #include "rings.h"
 
 enum {
-    ROBOT_LINKS = 30,      /* at most: of frames */
-    ROBOT_HULLS = 8,       /* links that are hulls */
-    ROBOT_FRAMES = 16,     /* of a link */
+    ROBOT_LINKS = 30,      /* at most */
+    ROBOT_HULLS = 8,       /* at most, of links that are hulls */
+    ROBOT_FRAMES = 16,     /* of each link */
     ROBOT_OBSTACLES = 100, /* at most */
     ROBOT_BODIES = ROBOT_LINKS + ROBOT_OBSTACLES,
     ROBOT_NEIGHBOURS = ROBOT_LINKS - 1,
-    ROBOT_HULL_DOUBLES = 1 << 10, /* suffice for each */
+    ROBOT_HULL_DOUBLES = 1 << 10, /* capacity for each hull */
     ROBOT_STATES = 200,
-    ROBOT_CONTACTS_MAX = 8 /* pairs of bodies in contact; at least 1 */
+    ROBOT_CONTACTS_MAX = 8 /* pairs of bodies in contact in a state; at least 1 */
 };
 
-/* The robot: bodies 0 to links - 1 are links, obstacles follow, which stand where they are, and are
+/* Bodies 0 to links - 1 are the links. The other bodies are obstacles, which do not move and are
  * not tested against each other. */
 struct robot {
     int links, obstacles;
@@ -31,22 +31,24 @@ struct robot {
     struct fmb_placement placement[ROBOT_STATES][ROBOT_BODIES];
 };
 
-/* Draws all states, of frames and boxes, or of hulls. The same on every machine up to the rounding
- * of sin() and cos(). */
+/* Draw all states: links of frames among boxes, or hulls among hulls. The states are the same on
+ * every machine up to the rounding of sin() and cos(). */
 void robot_draw(struct robot *out);
 void robot_draw_hulls(struct robot *out);
 
-/* An arm: links of so many, and hulls of these rings; boxes. Poses of links are not set. */
+/* Draws an arm among boxes. Poses of links are not set.
+ * In:  rings  index in robot_rings: the hull of each link
+ *      links, boxes  how many */
 void robot_draw_arm(int rings, int links, int boxes, struct robot *out);
 
-/* Hulls of links and of obstacles, see rings.h. */
+/* Indices in robot_rings, the hulls of links and obstacles: see rings.h. */
 enum { ROBOT_RINGS_LINK, ROBOT_RINGS_OBSTACLE, ROBOT_RINGS_SMALL, ROBOT_RINGS };
 extern const struct rings robot_rings[ROBOT_RINGS];
 
-/* From joint to joint, along z; metres. */
+/* Distance from joint to joint along z, in metres. */
 extern const double robot_link_length;
 
-/* The scene of a state. */
+/* Returns the scene of a state. */
 struct fmb_scene robot_scene(const struct robot *robot, int state);
 
 #endif
