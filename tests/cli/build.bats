@@ -121,7 +121,8 @@ included() {
             END { while ((getline file < sources) > 0) visit(file) }' | sort -u
 }
 
-# suffices DEPS: for each target that is listed after it. One will do of those that are one script.
+# suffices DEPS: for each target that is listed after it. One will do of those that are one script. A release needs a
+# section with a date in the page of changes (system/library.bats), and builds what 'deb' builds.
 suffices() {
     local target
     [ "$(packages_of "$1")" ]
@@ -131,7 +132,7 @@ suffices() {
     touch "$tree/build/accuracy.json"
     [ "$1" != deps-aarch64 ] || mkdir -p "$tree/build/aarch64/usr/lib/aarch64-linux-gnu"
     : > "$called"
-    for target in $(listed "$1" | grep -vx -e clean -e check -e test-fast); do
+    for target in $(listed "$1" | grep -vx -e clean -e check -e test-fast -e release); do
         make_there "$1" "$target"
         [ "$status" = 0 ] || { echo "make $target: $output"; false; }
     done
