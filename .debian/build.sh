@@ -21,7 +21,7 @@ done
 sed -n '/^Permission/,$ { s/^$/./; s/^/ /; p }' LICENSE >> "$copy/debian/copyright"
 {
     printf 'fmb (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n' "$version"
-    # The time of the last commit, which is that of all files of a tarball.
+    # The time of the last commit. In a tarball, all files have this time.
     time=$(git log -1 --format=%ct -- . 2> /dev/null) || time=
     printf -- ' -- %s  %s\n' "$(sed -n 's/^Maintainer: //p' .debian/control)" "$(date -uRd "@${time:-$(stat -c %Y Makefile)}")"
 } > "$copy/debian/changelog"

@@ -29,6 +29,16 @@ static void begin_json(struct report_rows *rows)
     json_begin(&rows->printer.json, "pairs", '[');
 }
 
+/* label: NULL: none. */
+static void put_label(FILE *out, const char *label)
+{
+    if (!label)
+        return;
+    fputs(" (", out);
+    escape_text(out, label);
+    putc(')', out);
+}
+
 static void begin_table(struct report_rows *rows)
 {
     const struct fmb_scene *scene = &rows->scene->scene;
@@ -37,11 +47,7 @@ static void begin_table(struct report_rows *rows)
     rows->begun = true;
     rows->printer.columns = columns_for(rows->scene);
     fprintf(rows->printer.out, "%sscene %" PRId64, rows->shown ? "\n" : "", rows->scenes);
-    if (scene->label) {
-        fputs(" (", rows->printer.out);
-        escape_text(rows->printer.out, scene->label);
-        putc(')', rows->printer.out);
-    }
+    put_label(rows->printer.out, scene->label);
     fprintf(rows->printer.out, ": %zu bod%s in %dD, %s pair%s, 0 to %s s\n", scene->placement_count,
             scene->placement_count == 1 ? "y" : "ies", rows->scene->dim,
             number_grouped((int64_t) count, pairs), count == 1 ? "" : "s",
@@ -176,11 +182,7 @@ void report_end(const struct report_rows *rows)
                 summary->first);
     else if (rows->scenes > 1)
         fprintf(out, " in %s scenes", number_grouped(rows->scenes, count[1]));
-    if (met && *summary->label) {
-        fputs(" (", out);
-        escape_text(out, summary->label);
-        putc(')', out);
-    }
+    put_label(out, met && *summary->label ? summary->label : NULL);
     for (int k = 0; k < 2 && met; k++) {
         fputs(k ? " and " : ": ", out);
         escape_text(out, summary->names[k]);

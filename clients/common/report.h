@@ -126,7 +126,8 @@ struct report_rows {
     /* Private. */
     struct owned_scene *scene;
     int64_t scenes;
-    bool begun, shown; /* the table of the scene has begun; that of an earlier one had */
+    bool begun;                          /* the table of this scene has begun */
+    bool shown;                          /* an earlier scene had a table */
     uint64_t count[FMB_OVERLAPPING + 1]; /* [verdict] of the scene; [0]: not decided */
     uint64_t near, left_out;             /* of those separated */
     struct report_summary summary;

@@ -1179,7 +1179,7 @@ class Robot(_Handle):
         clearance: the clearance to prove; None: the margin of the world. 0: none is required, and the
             clearance of each edge is found to within a tenth
         """
-        values = self._rows(rows)
+        values = self._joint_values(rows)
         scene = self.scene(world)
         wanted = scene.margin if clearance is None else _float("clearance", clearance)
         made = _Made("fmb_robot_path", "_begin", scene._robot[1]._handle, wanted, keeps=scene)
@@ -1206,7 +1206,7 @@ class Robot(_Handle):
         return Path(map(edge, edges), ((t.a, t.b, _VERDICTS[t.verdict]) for t in touches[:count]), scene,
                     self._lib.fmb_robot_path_pairs(made._handle), self._lib.fmb_robot_path_lever(made._handle))
 
-    def _rows(self, rows: Any) -> list[Any]:
+    def _joint_values(self, rows: Any) -> list[Any]:
         width = len(self.joints)
         if hasattr(rows, "keys"):
             missing = [name for name in self.joints if name not in rows.keys()]

@@ -112,8 +112,8 @@ struct fmb_robot_path {
     size_t family_count, family_capacity;
     unsigned *partner; /* [pair_count] */
     size_t pair_count, pair_capacity;
-    /* Pairs of placements: of these parts; that do not move relative to each other; ignored ones,
-     * of which at least one is of the robot. */
+    /* Numbers of pairs of placements: pairs of these parts; pairs that do not move relative to each
+     * other; ignored pairs with a link or a carried body. */
     size_t body_pairs, rigid_count, ignored_count;
     struct fmb_robot_touch *touches;
     size_t touch_count, touch_capacity;

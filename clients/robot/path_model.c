@@ -137,8 +137,8 @@ unsigned path_mover(const struct fmb_robot_path *path, unsigned node)
     return ROBOT_ROOT;
 }
 
-/* Finds the joints between two nodes that can move: up from a, then down to b. Those that both have
- * above them are not between them. */
+/* Finds the movable joints between two nodes: up from a, then down to b. Joints above both nodes
+ * are not between them. */
 static void find_chain(struct fmb_robot_path *path, unsigned a, unsigned b, struct path_chain *out)
 {
     const struct robot *tree = &path->scene->robot->tree;

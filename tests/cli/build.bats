@@ -121,8 +121,8 @@ included() {
             END { while ((getline file < sources) > 0) visit(file) }' | sort -u
 }
 
-# suffices DEPS: for each target that is listed after it. One will do of those that are one script. A release needs a
-# section with a date in the page of changes (system/library.bats), and builds what 'deb' builds.
+# suffices DEPS: makes each target that is listed after it. Where several targets are one script, one of them is made.
+# A release needs a section with a date in the page of changes (system/library.bats), and builds what 'deb' builds.
 suffices() {
     local target
     [ "$(packages_of "$1")" ]

@@ -12,7 +12,7 @@ fuzz() {
     [ "$2" != answer ] || length=1280 # as in fuzz.sh
     case $2 in
     answer | scene_json | replay_log) options=(-entropic=0 -use_counters=0) ;;
-    robot_files) # what is planted needs a large number, of which this file has forty
+    robot_files) # the planted fault needs a number near the largest double: this file has forty
         options=(-entropic=0 -use_counters=0)
         corpus=$BATS_TEST_TMPDIR/robot
         mkdir -p "$corpus"

@@ -409,7 +409,7 @@ enum fmb_status fmb_frame_make_vertices(int dim, int shape, const double *vertic
     return FMB_OK;
 }
 
-/* Returns number i of those that a frame was made of. */
+/* Returns number i of the list that fmb_frame_numbers() writes. */
 static double number_of(const struct fmb_frame *frame, size_t i)
 {
     const size_t dim = (size_t) frame->dim, axis = i % dim;
