@@ -375,7 +375,7 @@ static bool take_rows(struct path_run *run, struct joint_table *table, bool prov
                 robot_world_print(table->place, fmb_robot_path_why(run->run.path));
             continue;
         }
-        path_edge_of(run->run.path, run->from, joints->value);
+        path_set_edge(run->run.path, run->from, joints->value);
         while (!fmb_robot_path_step(run->run.path, &answer))
             ;
         write_edge(run, &edge, &answer);

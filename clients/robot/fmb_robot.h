@@ -195,7 +195,7 @@ size_t fmb_robot_path_touches(const struct fmb_robot_path *path,
 /* Begins an edge; an earlier one that is not complete is abandoned.
  * In:  from, to  [n], as for fmb_robot_place(); a continuous joint may turn by at most pi
  * Returns 0; or -1 after an error.
- * Cost: O(pairs of frames). */
+ * Cost: O(frames times links). The search begins at the first step. */
 int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const double *to);
 
 /* Returns an upper bound of how far two bodies move relative to each other if every joint is off by
@@ -227,7 +227,8 @@ struct fmb_robot_edge {
  * Out: *out  the answer, if it returns 1
  * Returns 1 if the edge is complete, and again at each later call; 0 if it is not complete, or if
  * no edge was begun.
- * Cost: some 0.1 ms; O(pairs of frames) where the search for the first contact begins. */
+ * Cost: some 0.1 ms; O(pairs of frames) at the first step of an edge, and where the search for the
+ * first contact begins. */
 int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out);
 
 #ifdef __cplusplus

@@ -20,7 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NONE, LEAST, FIRST, DONE }; /* NONE: there is no edge */
+/* NONE: there is no edge; SET: the search has not begun */
+enum { NONE, SET, LEAST, FIRST, DONE };
 
 enum {
     STEP_ENTRIES = 64, /* of a step */
@@ -522,14 +523,9 @@ int path_set_edge(struct fmb_robot_path *path, const double *from, const double 
     }
     if (!path->errors.out && !path_edge_begin(path))
         robot_say(&path->errors, "the robot or the world is too large");
-    return path->errors.out ? -1 : 0;
-}
-
-int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to)
-{
-    if (path_set_edge(path, from, to) != 0)
+    if (path->errors.out)
         return -1;
-    begin(path, 1);
+    path->phase = SET;
     return 0;
 }
 
@@ -553,7 +549,7 @@ int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const d
             value[end][robot->moving[i]] = (end ? to : from)[i];
         robot_follow(&robot->tree, NULL, value[end]);
     }
-    const int status = path_edge_of(path, value[0], value[1]);
+    const int status = path_set_edge(path, value[0], value[1]);
     free(value[0]);
     free(value[1]);
     return status;
@@ -561,6 +557,8 @@ int fmb_robot_path_edge(struct fmb_robot_path *path, const double *from, const d
 
 int fmb_robot_path_step(struct fmb_robot_path *path, struct fmb_robot_edge *out)
 {
+    if (path->phase == SET)
+        begin(path, 1);
     for (int i = 0; i < STEP_ENTRIES && (path->phase == LEAST || path->phase == FIRST); i++)
         if (take(path, &path->answer))
             path->phase = DONE;

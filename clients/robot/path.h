@@ -182,15 +182,12 @@ double path_length(const double v[3]);
 void path_turn(const double r[3][3], const double v[3], double out[3]);      /* r v */
 void path_turn_back(const double r[3][3], const double v[3], double out[3]); /* r transposed, v */
 
-/* Sets the values of all joints of the tree at both ends. Returns -1 after an error. */
+/* As fmb_robot_path_edge(), for values of all joints of the tree. */
 int path_set_edge(struct fmb_robot_path *path, const double *from, const double *to);
 
 /* Searches the edge again, up to a multiple of 2^-PATH_UNTIL_LEVEL. Returns the clearance that is
  * proven, or 0. */
 enum { PATH_UNTIL_LEVEL = 4 };
 double path_prove_until(struct fmb_robot_path *path, double until);
-
-/* As fmb_robot_path_edge(), for values of all joints of the tree. */
-int path_edge_of(struct fmb_robot_path *path, const double *from, const double *to);
 
 #endif
