@@ -298,8 +298,15 @@ struct fmb_placement {
     double velocity[FMB_DIM_MAX]; /* per second */
     double orientation[4];        /* w, x, y, z (2D: w, z); of any length but 0 */
     int orientation_count;        /* 0: not rotated; 4 (2D: 2) */
-    /* The pose at the end of the window, in place of a velocity. Not supported yet: end_count has
-     * to be 0, and these are not read. */
+    /* The pose at the end of the window, in place of a velocity. The body then moves and turns from
+     * its pose to this one. With s = t / T:
+     *
+     *     p(s) = (1 - s) p0 + s p1,    q(s) = (1 - s) q0 + s c q1,    c the sign of q0 . q1
+     *
+     * for position and orientation p0, q0 and those of the end p1, q1; these doubles are exact too.
+     * A body that begins without a rotation and turns has the orientation (1, 0, 0, 0). Windows
+     * that share a pose join exactly. A turn is less than 180 degrees; longer ones take several
+     * windows. */
     double end_position[FMB_DIM_MAX], end_orientation[4];
     int end_count; /* 0: none; otherwise the dimension plus orientation_count */
     /* Not 0: in a scene, placements of one group are not tested against each other. */
@@ -314,13 +321,25 @@ struct fmb_placement {
  * Returns one of:
  *   FMB_OK
  *   FMB_NO_FRAMES        body is NULL or was not made
- *   FMB_NOT_FINITE       position or velocity
- *   FMB_WRONG_COUNT      orientation_count is neither 0 nor that of the dimension; or it is 0 and
- *                        orientation is not all 0
- *   FMB_NOT_SUPPORTED    end_count is not 0
+ *   FMB_WRONG_COUNT      orientation_count is neither 0 nor that of the dimension; it is 0 and
+ *                        orientation is not all 0; end_count is neither 0 nor the dimension plus
+ *                        orientation_count; or there are both an end and a velocity
+ *   FMB_NOT_FINITE       position or velocity, or the position of the end
  *   FMB_BAD_ORIENTATION  the orientation is all 0, is not finite, or has a component other than 0
- *                        whose magnitude is less than 2^-200 of the largest */
+ *                        whose magnitude is less than 2^-200 of the largest; or that of the end is;
+ *                        or the two quaternions are at right angles, or their lengths differ by
+ *                        more than a factor of 4, all exactly */
 enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
+
+/* Sets *out to the placement at a time, at rest there: for pictures, since the pose is rounded. At
+ * 0 and at the duration, bodies with an end have the pose given, bit for bit. Times outside
+ * the window are moved to its ends; in a window of 0 s the pose is that of time 0.
+ *
+ * In: placement  fmb_placement_check() accepts it; may be out
+ *     duration   T, seconds; legal
+ *     time       seconds, not NaN */
+void fmb_pose_at(const struct fmb_placement *placement, double duration, double time,
+                 struct fmb_placement *out);
 
 /* ---- Two bodies ---- */
 

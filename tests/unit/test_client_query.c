@@ -472,8 +472,8 @@ static void wrong_scenes_are_refused(void **state)
     scene.label = NULL;
     frame[2].orientation_count = 3;
     wrong(test.client, &scene, FMB_WRONG_COUNT, "placements[2]: ");
-    frame[2] = good[2], frame[2].end_count = 3;
-    wrong(test.client, &scene, FMB_NOT_SUPPORTED, "placements[2]: ");
+    frame[2] = good[2], frame[2].end_count = 8;
+    wrong(test.client, &scene, FMB_WRONG_COUNT, "placements[2]: ");
     frame[2] = good[2], frame[0].velocity[1] = NAN;
     wrong(test.client, &scene, FMB_NOT_FINITE, "placements[0]: ");
     frame[0] = good[0], frame[0].id = INT64_C(1) << 53;

@@ -438,15 +438,6 @@ static void placements_without_a_body_are_refused(void **state)
     expect_status(&(struct fmb_placement){.body = &plane_body}, FMB_OK);
 }
 
-/* What the structs can say, but this version does not do. */
-static void ends_are_not_supported(void **state)
-{
-    plane_body = make_body(2, unit2);
-    for (int count = -1; count <= 7; count++)
-        expect_status(&(struct fmb_placement){.body = &plane_body, .end_count = count},
-                      count == 0 ? FMB_OK : FMB_NOT_SUPPORTED);
-}
-
 /* A radius that is refused changes nothing. */
 static void radii_are_finite_and_not_negative(void **state)
 {
@@ -624,7 +615,6 @@ int main(void)
         cmocka_unit_test(radii_of_large_frames_are_rounded_up),
         cmocka_unit_test(bodies_that_are_refused),
         cmocka_unit_test(placements_without_a_body_are_refused),
-        cmocka_unit_test(ends_are_not_supported),
         cmocka_unit_test(radii_are_finite_and_not_negative),
         cmocka_unit_test(placements_that_are_not_finite_are_refused),
         cmocka_unit_test(counts_of_orientations),

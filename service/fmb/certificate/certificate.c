@@ -128,7 +128,8 @@ static enum fmb_status check(const struct fmb_placement *a, const struct fmb_pla
                              double duration)
 {
     const enum fmb_status status = placements_check(a, b, duration);
-    if (status == FMB_OK && (a->body->frame_count > 1 || b->body->frame_count > 1))
+    if (status == FMB_OK && (a->body->frame_count > 1 || b->body->frame_count > 1 ||
+                             a->end_count != 0 || b->end_count != 0))
         return FMB_CANNOT_DECIDE;
     return status;
 }

@@ -445,6 +445,8 @@ static const char *flaw_of_placements(const struct fmb_placement *a, const struc
         return fmb_status_text(FMB_BAD_DURATION);
     if (a->body->frame_count > 1 || b->body->frame_count > 1)
         return "a body of several frames has no certificate";
+    if (a->end_count != 0 || b->end_count != 0)
+        return "a body that turns has no certificate";
     return NULL;
 }
 

@@ -688,7 +688,7 @@ static void decide_open(const struct batch_job *job, size_t i)
                               job->farthest, &answer);
     put_answer(batch, i, &answer);
     if (batch->gaps)
-        batch->gaps[i] = answer.gap;
+        batch->gaps[i] = answer.has_gap ? answer.gap : gap_none();
 }
 
 /* Lists the pairs that the blocks left open, in ascending order, and clears their verdicts; or
@@ -760,13 +760,16 @@ enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct f
     enum slabs_outcome outcome = SLABS_UNSURE;
     if (kind != KERNEL_UNUSABLE)
         outcome = kernel_set_best()->single[kind](swapped ? b : a, swapped ? a : b, duration);
-    *verdict = outcome == SLABS_UNSURE && kind != KERNEL_UNUSABLE
-                   ? certified_unsure(a, b, duration, 1)
-                   : (enum fmb_verdict) outcome;
-    if (*verdict == 0) {
-        struct fmb_answer answer = {0};
+    struct fmb_answer answer = {.verdict = outcome == SLABS_UNSURE && kind != KERNEL_UNUSABLE
+                                               ? certified_unsure(a, b, duration, 1)
+                                               : (enum fmb_verdict) outcome};
+    if (answer.verdict == 0) {
+        if (duration == 0 && (prepared_has_end(a) || prepared_has_end(b)))
+            return FMB_BAD_DURATION;
         certified_decide_prepared(a, b, duration, 0, INFINITY, &answer);
-        *verdict = answer.verdict;
     }
+    if (answer.verdict == 0)
+        return FMB_CANNOT_DECIDE;
+    *verdict = answer.verdict;
     return FMB_OK;
 }

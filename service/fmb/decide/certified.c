@@ -346,8 +346,14 @@ bool certified_gap_and_point(const struct fmb_prepared *a, const struct fmb_prep
                              struct fmb_answer *answer)
 {
     struct support_decision program;
+    if (prepared_has_end(a) || prepared_has_end(b))
+        return false;
     return begin_gap_and_point(a, b, duration, want, farthest, true, &program, answer);
 }
+
+static bool begin_with_end(const struct frame_pair *pair, unsigned want, double farthest,
+                           enum support_effort effort, struct certified *out,
+                           struct fmb_answer *answer);
 
 /* a, b: the frames of the pair, prepared, or NULL. */
 INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared *a,
@@ -355,6 +361,8 @@ INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared 
                        enum support_effort effort, struct certified *out, struct fmb_answer *answer)
 {
     support_decision_none(&out->program);
+    if ((pair->a.placement->end_count | pair->b.placement->end_count) != 0)
+        return begin_with_end(pair, want, farthest, effort, out, answer);
     if (effort == SUPPORT_PROGRAMS || support_takes(pair->a.frame, pair->b.frame)) {
         out->stage = CERTIFIED_ALL;
         return support_decision_begin(pair, want, effort, farthest, &out->program, answer);
@@ -373,6 +381,26 @@ INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared 
     answer->verdict = climb(out, CERTIFIED_FILTER);
     return answer->verdict ? measure(out, answer)
                            : begin_program(out, want & (FMB_WANT_BOX | FMB_WANT_TIMES));
+}
+
+/* Begins the decision of a pair of which a placement has an end. */
+static bool begin_with_end(const struct frame_pair *pair, unsigned want, double farthest,
+                           enum support_effort effort, struct certified *out,
+                           struct fmb_answer *answer)
+{
+    if (pair->duration > 0) {
+        out->stage = CERTIFIED_ALL;
+        return true;
+    }
+    const struct placed_frame *const given[2] = {&pair->a, &pair->b};
+    struct frame_pair still = *pair;
+    for (int f = 0; f < 2; f++) {
+        out->begin[f] = *given[f]->placement;
+        out->begin[f].end_count = 0;
+    }
+    still.a.placement = &out->begin[0];
+    still.b.placement = &out->begin[1];
+    return begin_pair(&still, NULL, NULL, want, farthest, effort, out, answer);
 }
 
 bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
@@ -417,7 +445,7 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                            &certified, answer);
     while (!done)
         done = certified_step(&certified, answer);
-    return FMB_OK;
+    return answer->verdict ? FMB_OK : FMB_CANNOT_DECIDE;
 }
 
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)

@@ -42,6 +42,7 @@ struct certified {
     /* What the programs compute: the whole answer; what is missing of contact and box; gap and
      * point. */
     enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP_AND_POINT } stage;
+    struct fmb_placement begin[2]; /* in a window of 0 s: the placements without their ends */
     struct support_decision program;
     struct fmb_answer proven; /* by programs: verdict, contact and box */
     /* The pair that the rungs decide: the given one, or its projection. */

@@ -11,6 +11,8 @@
 static enum fmb_status decide_exactly(const struct frame_pair *pair, unsigned want,
                                       struct fmb_answer *answer)
 {
+    if (pair_turns(pair))
+        return certified_decide(pair, want, answer);
     return support_decide(pair, want | FMB_WANT_TIMES, SUPPORT_PROGRAMS, answer);
 }
 

@@ -51,6 +51,7 @@ struct scene_outcomes {
     double box[BLOCK][2][FMB_DIM_MAX];
     double point[BLOCK][1 + FMB_DIM_MAX];
     unsigned point_frames[BLOCK][2]; /* in answers of bodies: the frames that have the point */
+    bool undecided[BLOCK];           /* in answers of bodies: a pair of frames has no verdict */
     struct fmb_gap gap[BLOCK];
 };
 
@@ -194,7 +195,8 @@ static enum fmb_status check_placements(const struct fmb_scene *scene, size_t co
             status = FMB_DIMENSIONS_DIFFER;
         if (status != FMB_OK)
             return refuse_element(why, status, "placements", i);
-        if (moving == count && placement_moves(placement, placement->body->dim))
+        if (moving == count &&
+            (placement->end_count != 0 || placement_moves(placement, placement->body->dim)))
             moving = i;
     }
     if (scene->instant && scene->duration != 0)
@@ -429,6 +431,7 @@ static void begin_answer(struct fmb_scene_state *state, size_t n)
 {
     struct scene_outcomes *answers = &state->block.answers;
     answers->verdict[n] = FMB_SEPARATED;
+    answers->undecided[n] = false;
     answers->gap[n] = gap_none();
     for (int end = 0; end < 2; end++) {
         answers->contact[n][end] = NAN;
@@ -443,11 +446,19 @@ static void copy_answer(struct scene_outcomes *answers, size_t to, const struct 
                         size_t from)
 {
     answers->verdict[to] = of->verdict[from];
+    answers->undecided[to] = of->undecided[from];
     memcpy(answers->contact[to], of->contact[from], sizeof of->contact[from]);
     memcpy(answers->box[to], of->box[from], sizeof of->box[from]);
     memcpy(answers->point[to], of->point[from], sizeof of->point[from]);
     memcpy(answers->point_frames[to], of->point_frames[from], sizeof of->point_frames[from]);
     answers->gap[to] = of->gap[from];
+}
+
+/* Returns whether an overlap of two frames is the answer of their bodies. An inexact method may
+ * still refuse a pair of frames. */
+static bool is_verdict_alone(const struct fmb_scene_state *state)
+{
+    return !state->scene.want && !has_gaps(&state->scene) && state->scene.method->certain;
 }
 
 /* Moves the unfinished pair of bodies of the last block to the front, if it still needs pairs of
@@ -457,15 +468,12 @@ static void keep_halfway(struct fmb_scene_state *state)
     struct scene_block *block = &state->block;
     const size_t last = block->body_count - 1;
     const unsigned char verdict = block->answers.verdict[last];
-    const bool verdict_alone =
-        !state->scene.want && !has_gaps(&state->scene) &&
-        state->scene.method->certain; /* an inexact method may still refuse a pair of frames */
     memmove(block->bodies[0], block->bodies[last], sizeof block->bodies[0]);
     copy_answer(&block->answers, 0, &block->answers, last);
     block->body_count = 1;
     block->first += last;
     state->cursor.reach = reach_of(state, 0);
-    if (verdict == 0 || (verdict == FMB_OVERLAPPING && verdict_alone))
+    if (is_verdict_alone(state) ? verdict == FMB_OVERLAPPING : block->answers.undecided[0])
         state->halfway = false;
 }
 
@@ -651,13 +659,10 @@ static void include(struct fmb_scene_state *state, size_t k)
     const unsigned char verdict = one->verdict[k];
     if (has_gaps(&state->scene))
         include_gap(state, k, n);
-    if (verdict == FMB_SEPARATED || answers->verdict[n] == 0)
+    if (verdict == 0)
+        answers->undecided[n] = true;
+    if (verdict == FMB_SEPARATED || verdict == 0)
         return;
-    if (verdict == 0) {
-        begin_answer(state, n);
-        answers->verdict[n] = 0;
-        return;
-    }
     if (state->scene.want & FMB_WANT_POINT)
         include_point(state, k, n);
     if (verdict > answers->verdict[n])
@@ -671,6 +676,17 @@ static void include(struct fmb_scene_state *state, size_t k)
         answers->box[n][0][axis] = fmin(answers->box[n][0][axis], one->box[k][0][axis]);
         answers->box[n][1][axis] = fmax(answers->box[n][1][axis], one->box[k][1][axis]);
     }
+}
+
+/* Clears the answer of bodies with a pair of frames that has no verdict and might change it. */
+static void end_undecided(struct fmb_scene_state *state, size_t n)
+{
+    struct scene_outcomes *answers = &state->block.answers;
+    if (!answers->undecided[n] ||
+        (answers->verdict[n] == FMB_OVERLAPPING && is_verdict_alone(state)))
+        return;
+    begin_answer(state, n);
+    answers->verdict[n] = 0;
 }
 
 /* Includes all pairs of frames before the first open one. Returns the end of the pairs of bodies
@@ -712,7 +728,7 @@ static size_t drop_separated(struct fmb_scene_state *state, struct scene_outcome
     unsigned(*pair)[2] = state->block.bodies;
     size_t to = first;
     for (size_t n = first; n < end; n++) {
-        if (!batch_is_contact(answers->verdict[n]) && !is_near(state, &answers->gap[n]))
+        if (answers->verdict[n] == FMB_SEPARATED && !is_near(state, &answers->gap[n]))
             continue;
         if (to < n) {
             memcpy(pair[to], pair[n], sizeof pair[to]);
@@ -729,6 +745,8 @@ static void hand_out(struct fmb_scene_state *state, struct fmb_scene_answers *ou
     struct scene_outcomes *answers = state->frames.direct ? &block->outcomes : &block->answers;
     const size_t first = block->given, end = include_decided(state);
     block->given = end;
+    for (size_t n = first; !state->frames.direct && n < end; n++)
+        end_undecided(state, n);
     for (size_t n = first; has_gaps(&state->scene) && n < end; n++)
         end_gap(state, answers->verdict[n], &answers->gap[n]);
     state->first_answer = first;

@@ -459,6 +459,14 @@ INLINE struct aabb box_at_origin(const struct fmb_frame *frame, const int dim,
     return aabb_of(&prepared, 0);
 }
 
+void frame_box(const struct fmb_frame *frame, double box[2][FMB_DIM_MAX])
+{
+    const struct fmb_placement origin = {0};
+    const struct aabb aabb =
+        frame->dim == 3 ? box_at_origin(frame, 3, &origin) : box_at_origin(frame, 2, &origin);
+    aabb_get_ends(&aabb, box);
+}
+
 /* Sets the box of a body: the union of those of its frames, in body coordinates. */
 static void set_body_box(struct fmb_body *out)
 {
@@ -565,7 +573,8 @@ enum fmb_status placements_check(const struct fmb_placement *a, const struct fmb
         status = fmb_placement_check(b);
     if (status == FMB_OK && a->body->dim != b->body->dim)
         status = FMB_DIMENSIONS_DIFFER;
-    if (status == FMB_OK && !prepared_is_duration(duration))
+    if (status == FMB_OK && (!prepared_is_duration(duration) ||
+                             (duration == 0 && (a->end_count != 0 || b->end_count != 0))))
         status = FMB_BAD_DURATION;
     return status;
 }

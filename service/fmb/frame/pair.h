@@ -51,4 +51,10 @@ static inline bool pair_moves(const struct frame_pair *pair)
     return placement_moves(pair->a.placement, dim) || placement_moves(pair->b.placement, dim);
 }
 
+/* Returns whether a placement of the pair has an end, and the window is not empty. */
+static inline bool pair_turns(const struct frame_pair *pair)
+{
+    return (pair->a.placement->end_count | pair->b.placement->end_count) != 0 && pair->duration > 0;
+}
+
 #endif

@@ -1,6 +1,7 @@
 #include "prepared.h"
 
 #include "inlined.h"
+#include "motion.h"
 #include "rotation.h"
 #include "vector.h"
 
@@ -322,12 +323,22 @@ static __attribute__((noinline)) void set_rotated(const struct fmb_frame *frame,
     set(frame, &rotation, placement, out);
 }
 
+/* Sets the flags of frames whose placement has an end. */
+static void set_flags_of_end(struct fmb_prepared *out, unsigned count)
+{
+    const unsigned long long set = in_summary(PREPARED_VERTICES | PREPARED_MOVING);
+    for (unsigned i = 0; i < count; i++)
+        out[i].summary = (out[i].summary | set) & ~in_summary(PREPARED_USABLE | PREPARED_PLAIN);
+}
+
 void prepared_set(struct placed_frame placed, struct fmb_prepared *out)
 {
     if (is_unrotated(placed.frame, placed.placement))
         set_unrotated(placed.frame, placed.placement, out);
     else
         set_rotated(placed.frame, placed.placement, out);
+    if (placed.placement->end_count != 0)
+        set_flags_of_end(out, 1);
 }
 
 INLINE void set_frames(const struct fmb_placement *placement, unsigned first, unsigned count,
@@ -342,6 +353,8 @@ INLINE void set_frames(const struct fmb_placement *placement, unsigned first, un
         else
             set(frame, &rotation, placement, &out[i]);
     }
+    if (placement->end_count != 0)
+        set_flags_of_end(out, count);
 }
 
 void prepared_place(const struct fmb_placement *placement, unsigned first, unsigned count,
@@ -374,10 +387,10 @@ INLINE enum fmb_status check(const struct fmb_placement *placement)
     const struct fmb_body *body = placement->body;
     if (!body || body->frame_count == 0)
         return FMB_NO_FRAMES;
+    if (placement->end_count != 0)
+        return motion_check(placement);
     if (!is_finite(placement->position, body->dim) || !is_finite(placement->velocity, body->dim))
         return FMB_NOT_FINITE;
-    if (placement->end_count != 0)
-        return FMB_NOT_SUPPORTED;
     return check_orientation(placement, body->dim);
 }
 

@@ -59,7 +59,9 @@ enum {
      * frame, by half of a component to either side. */
     PREPARED_CENTRED = 1 << 14,
     /* Decided by its vertices (support_pair.h): a hull, whose numbers describe a cuboid that
-     * contains it, or a frame with a radius, whose numbers describe its core. */
+     * contains it, or a frame with a radius, whose numbers describe its core. Set too, with
+     * PREPARED_MOVING and without PREPARED_USABLE, of every frame whose placement has an end: its
+     * numbers describe it at the beginning of the window. */
     PREPARED_VERTICES = 1 << 15
 };
 
@@ -100,6 +102,14 @@ static inline const double *prepared_velocity(const struct fmb_prepared *frame)
 {
     return prepared_kind(frame) & PREPARED_3D ? frame->placement->velocity
                                               : &frame->number[PREPARED_VELOCITY_2D - 1];
+}
+
+/* Returns whether the placement of a frame has an end. In: the frame is valid. */
+static inline bool prepared_has_end(const struct fmb_prepared *frame)
+{
+    const unsigned bits = PREPARED_VERTICES | PREPARED_MOVING | PREPARED_USABLE;
+    return (prepared_kind(frame) & bits) == (PREPARED_VERTICES | PREPARED_MOVING) &&
+           frame->placement->end_count != 0;
 }
 
 /* Returns the error of a frame, in the unit of its coordinates. */

@@ -38,7 +38,14 @@ static int compare_placements(const struct fmb_placement *x, const struct fmb_pl
         order = compare(x->velocity, y->velocity, dim);
     if (order == 0)
         order = x->orientation_count - y->orientation_count;
-    return order ? order : compare(x->orientation, y->orientation, x->orientation_count);
+    if (order == 0)
+        order = compare(x->orientation, y->orientation, x->orientation_count);
+    if (order == 0)
+        order = x->end_count - y->end_count;
+    if (order || x->end_count == 0)
+        return order;
+    order = compare(x->end_position, y->end_position, dim);
+    return order ? order : compare(x->end_orientation, y->end_orientation, x->orientation_count);
 }
 
 static int compare_frames(const struct fmb_frame *x, const struct fmb_frame *y)

@@ -1206,7 +1206,7 @@ static void begin_span_of(struct programs *e, int f)
 
 static void begin_difference(struct programs *e)
 {
-    e->ends[1] = pair_moves(e->pair->frames) && e->pair->frames->duration > 0;
+    e->ends[1] = !e->pair->posed && pair_moves(e->pair->frames) && e->pair->frames->duration > 0;
     e->next_first = 0;
     begin_span(e, SPANNING);
 }
@@ -1219,7 +1219,7 @@ static struct programs *begin(const struct support_pair *pair, bool nearest)
     each(e, mpz_init);
     e->pair = pair;
     e->proof.integers = &e->integers;
-    support_integers_set(pair->frames, &e->integers);
+    support_integers_set(pair->frames, pair->posed, pair->at, &e->integers);
     for (int f = 0; f < 2; f++) {
         e->side[f].view = &pair->view[f];
         e->side[f].integers = &e->integers.side[f];

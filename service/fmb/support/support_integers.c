@@ -1,6 +1,7 @@
 #include "support_integers.h"
 
 #include "integer.h"
+#include "motion.h"
 
 void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr))
 {
@@ -27,19 +28,57 @@ void support_integers_each(struct support_integers *integers, void (*call)(mpz_p
  * are multiplied by scale: n_a n_b, or n_a if n_a = n_b. This changes no sign, no time and no
  * direction. Points are divided by scale at the end. */
 
-static void set_turn(const struct fmb_placement *placement, struct support_turn *turn)
+static void set_given(const struct fmb_placement *placement, mpz_t q[4])
 {
     struct limbs_quaternion quaternion;
     limbs_quaternion_set(placement, &quaternion);
-    turn->turned = quaternion.turned;
-    mpz_set_ui(turn->norm, 1);
-    if (!turn->turned)
-        return;
+    mpz_set_ui(q[0], 1);
+    for (int i = 0; i < 4 && quaternion.turned; i++)
+        integer_set(q[i], quaternion.at[i], quaternion.unit);
+}
+
+/* q := the orientation at a fraction of the window, a multiple of 2^-53, times a factor. */
+static void set_between(const struct fmb_placement *placement, double at, mpz_t q[4])
+{
+    const struct dyadic late = dyadic_of(at), early = dyadic_of(1 - at);
+    double end[2][4];
+    mpz_t other;
+    struct dyadic_span span = dyadic_span_begin();
+    mpz_init(other);
+    motion_quaternions(placement, end[0], end[1]);
+    for (int i = 0; i < 4; i++) {
+        dyadic_span_add(&span, dyadic_of(end[0][i]));
+        dyadic_span_add(&span, dyadic_of(end[1][i]));
+    }
+    const long unit = span.unit + (late.exponent < early.exponent ? late.exponent : early.exponent);
+    for (int i = 0; i < 4; i++) {
+        integer_set_product(q[i], dyadic_of(end[0][i]), early, unit);
+        integer_set_product(other, dyadic_of(end[1][i]), late, unit);
+        mpz_add(q[i], q[i], other);
+    }
+    mpz_set_ui(other, 0);
+    for (int i = 0; i < 4; i++)
+        mpz_gcd(other, other, q[i]);
+    for (int i = 0; i < 4; i++)
+        mpz_divexact(q[i], q[i], other);
+    mpz_clear(other);
+}
+
+static void set_turn(const struct fmb_placement *placement, bool posed, double at,
+                     struct support_turn *turn)
+{
     mpz_t q[4], product;
     mpz_inits(q[0], q[1], q[2], q[3], product, NULL);
-    for (int i = 0; i < 4; i++)
-        if (quaternion.at[i].mantissa)
-            integer_set(q[i], quaternion.at[i], quaternion.unit);
+    if (posed)
+        set_between(placement, at, q);
+    else
+        set_given(placement, q);
+    turn->turned = mpz_sgn(q[1]) != 0 || mpz_sgn(q[2]) != 0 || mpz_sgn(q[3]) != 0;
+    mpz_set_ui(turn->norm, 1);
+    if (!turn->turned) {
+        mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
+        return;
+    }
     mpz_set_ui(turn->norm, 0);
     for (int k = 0; k < 4; k++) {
         mpz_mul(product, q[k], q[k]);
@@ -108,6 +147,41 @@ static void set_small(struct support_side *side, long unit)
     mpz_clear(component);
 }
 
+void support_integers_path(const struct fmb_placement *placement, double duration, long unit,
+                           mpz_t out[3])
+{
+    const struct dyadic window = dyadic_of(duration);
+    for (int axis = 0; axis < placement->body->dim; axis++)
+        if (placement->end_count)
+            integer_set_sum(out[axis], placement->end_position[axis], -placement->position[axis],
+                            unit);
+        else
+            integer_set_product(out[axis], dyadic_of(placement->velocity[axis]), window, unit);
+}
+
+/* Sets a frame at a fraction of the window, whose unit all lengths of the pair are multiples of. */
+static void set_posed(const struct frame_pair *frames, double at,
+                      const struct support_integers *integers, struct support_side *side)
+{
+    const struct fmb_placement *placement =
+        side == &integers->side[0] ? frames->a.placement : frames->b.placement;
+    const struct dyadic late = dyadic_of(at);
+    mpz_t path[3];
+    mpz_inits(path[0], path[1], path[2], NULL);
+    support_integers_path(placement, frames->duration, integers->unit, path);
+    for (int axis = 0; axis < side->frame->dim; axis++) {
+        mpz_mul_si(path[axis], path[axis], late.mantissa);
+        if (late.mantissa)
+            mpz_fdiv_q_2exp(path[axis], path[axis], (mp_bitcnt_t) -late.exponent);
+        integer_set(side->position[axis], dyadic_of(placement->position[axis]), integers->unit);
+        mpz_add(side->position[axis], side->position[axis], path[axis]);
+        mpz_mul(side->position[axis], side->position[axis], integers->scale);
+    }
+    if (side->frame->shape != FMB_HULL)
+        set_small(side, integers->unit);
+    mpz_clears(path[0], path[1], path[2], NULL);
+}
+
 static void set_side(const struct fmb_placement *placement, const struct dyadic window,
                      const struct support_integers *integers, struct support_side *side)
 {
@@ -122,14 +196,28 @@ static void set_side(const struct fmb_placement *placement, const struct dyadic 
         set_small(side, integers->unit);
 }
 
-void support_integers_set(const struct frame_pair *frames, struct support_integers *out)
+long support_integers_unit(const struct frame_pair *frames)
+{
+    const struct fmb_placement *placed[2] = {frames->a.placement, frames->b.placement};
+    struct dyadic_span span = limbs_span_of(frames);
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < placed[f]->body->dim && placed[f]->end_count; axis++)
+            dyadic_span_add(&span, dyadic_of(placed[f]->end_position[axis]));
+    return span.unit;
+}
+
+void support_integers_set(const struct frame_pair *frames, bool posed, double at,
+                          struct support_integers *out)
 {
     const struct placed_frame *placed[2] = {&frames->a, &frames->b};
+    const struct dyadic late = dyadic_of(at);
     struct support_side *side = out->side;
-    out->unit = limbs_span_of(frames).unit;
+    out->unit = posed ? support_integers_unit(frames) : limbs_span_of(frames).unit;
+    if (posed && late.exponent < 0)
+        out->unit += late.exponent;
     for (int f = 0; f < 2; f++) {
         side[f].frame = placed[f]->frame;
-        set_turn(placed[f]->placement, &side[f].turn);
+        set_turn(placed[f]->placement, posed, at, &side[f].turn);
     }
     const bool same = mpz_cmp(side[0].turn.norm, side[1].turn.norm) == 0;
     mpz_set(out->scale, side[0].turn.norm);
@@ -140,7 +228,10 @@ void support_integers_set(const struct frame_pair *frames, struct support_intege
             mpz_set_ui(side[f].factor, 1);
         else
             mpz_set(side[f].factor, side[!f].turn.norm);
-        set_side(placed[f]->placement, dyadic_of(frames->duration), out, &side[f]);
+        if (posed)
+            set_posed(frames, at, out, &side[f]);
+        else
+            set_side(placed[f]->placement, dyadic_of(frames->duration), out, &side[f]);
     }
     integer_set_sum(out->radius, frames->a.frame->radius, frames->b.frame->radius, out->unit);
     mpz_mul(out->radius, out->radius, out->scale);
@@ -148,8 +239,8 @@ void support_integers_set(const struct frame_pair *frames, struct support_intege
         mpz_sub(out->drift[axis], side[1].displacement[axis], side[0].displacement[axis]);
 }
 
-void support_integers_place(const struct support_integers *integers, int f, unsigned i,
-                            mpz_t out[3])
+void support_integers_vertex(const struct support_integers *integers, int f, unsigned i,
+                             mpz_t out[3])
 {
     const struct support_side *side = &integers->side[f];
     const struct fmb_frame *frame = side->frame;
@@ -163,6 +254,13 @@ void support_integers_place(const struct support_integers *integers, int f, unsi
                         dyadic_of(frame->vertices[(size_t) axis * frame->vertex_stride + i]),
                         integers->unit);
     }
+}
+
+void support_integers_place(const struct support_integers *integers, int f, unsigned i,
+                            mpz_t out[3])
+{
+    const struct support_side *side = &integers->side[f];
+    support_integers_vertex(integers, f, i, out);
     turn_vector(&side->turn, side->factor, out);
     for (int axis = 0; axis < 3; axis++)
         mpz_add(out[axis], out[axis], side->position[axis]);

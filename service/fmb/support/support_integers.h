@@ -36,8 +36,22 @@ struct support_integers {
 /* Calls one of mpz_init and mpz_clear for every number. */
 void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr));
 
-/* Sets the integers of a checked pair, whose frames must outlive them. In: all numbers are 0. */
-void support_integers_set(const struct frame_pair *frames, struct support_integers *out);
+/* Sets the integers of a checked pair, whose frames must outlive them. posed: of the pose at a
+ * fraction of the window, without displacement; else of the pose at its beginning, whose ends are
+ * not read. In: all numbers are 0. */
+void support_integers_set(const struct frame_pair *frames, bool posed, double at,
+                          struct support_integers *out);
+
+/* Returns a power of two that divides all lengths of a pair that turns. */
+long support_integers_unit(const struct frame_pair *frames);
+
+/* out := the displacement of a placement over the window, over 2^unit: to its end, or v T. */
+void support_integers_path(const struct fmb_placement *placement, double duration, long unit,
+                           mpz_t out[3]);
+
+/* out := vertex i of frame f in body coordinates. */
+void support_integers_vertex(const struct support_integers *integers, int f, unsigned i,
+                             mpz_t out[3]);
 
 /* out := vertex i of frame f in the world at time 0. */
 void support_integers_place(const struct support_integers *integers, int f, unsigned i,

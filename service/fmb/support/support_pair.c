@@ -140,7 +140,8 @@ void support_pair_set(const struct frame_pair *frames, struct support_pair *out)
     const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
     out->frames = frames;
     out->dim = frames->a.frame->dim;
-    out->drifts = false;
+    out->drifts = out->posed = false;
+    out->at = 0;
     set_view(frames->a, &out->view[0]);
     set_view(frames->b, &out->view[1]);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {

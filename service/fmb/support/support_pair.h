@@ -71,8 +71,11 @@ struct support_pair {
     double offset[FMB_DIM_MAX]; /* position of b - position of a, rounded; beyond dim: 0 */
     double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, rounded */
     double reach, error;        /* as above */
-    bool rounded;               /* a frame has a radius */
-    double radius[2];           /* lower and upper bound of the sum of both radii */
+    /* The pose of a pair that turns: that at the fraction at of the window, a multiple of 2^-53. */
+    bool posed;
+    double at;
+    bool rounded;     /* a frame has a radius */
+    double radius[2]; /* lower and upper bound of the sum of both radii */
 };
 
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */

@@ -104,7 +104,7 @@ void support_placed_begin(const struct support_pair *pair, struct support_placed
         rotation_set_planar(1, 0, true, &view->rotation);
     }
     numbers_each(out, mpz_init);
-    support_integers_set(pair->frames, &out->integers);
+    support_integers_set(pair->frames, pair->posed, pair->at, &out->integers);
 }
 
 static void set_pair(struct support_placed *placed)

@@ -1,5 +1,6 @@
 #include "scene_frames.h"
 
+#include "motion.h"
 #include "rotation.h"
 
 enum {
@@ -46,6 +47,8 @@ static struct aabb rotated_box(const struct fmb_placement *placement, double dur
     struct rotation_matrix rotation;
     struct aabb out = {{{0}}};
     double m[FMB_DIM_MAX], h[FMB_DIM_MAX], sum = 0;
+    if (motion_turns(placement, duration))
+        return motion_box(placement, body->box, body->reach);
     rotation_of(placement, body->dim, &rotation);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         const double low = body->box[0][axis], high = body->box[1][axis];

@@ -1,0 +1,45 @@
+/* Placements with an end: the pose moves from the begin to the end of the window. With s = t / T,
+ *
+ *     p(s) = (1 - s) p0 + s p1,    q(s) = (1 - s) q0 + s c q1,    c the sign of q0 . q1.
+ *
+ * N(q) = |q|^2 R(q) is a quadratic form in q. Its polar form N(q, r), which is bilinear and
+ * symmetric, with N(q, q) = N(q), gives the Bernstein coefficients of N(q(s)) on an interval:
+ * N(q, q), N(q, r), N(r, r) for its ends q and r. Those of |q(s)|^2 are q . q, q . r and r . r, all
+ * positive. No shared state. */
+#ifndef FMB_MOTION_H
+#define FMB_MOTION_H
+
+#include "aabb.h"
+#include "rotation.h"
+
+/* Returns whether the pose of a placement changes within a window of this duration other than by a
+ * velocity. */
+static inline bool motion_turns(const struct fmb_placement *placement, double duration)
+{
+    return placement->end_count != 0 && duration > 0;
+}
+
+/* The status of fmb_placement_check() of a placement whose end_count is not 0. In: its body has a
+ * frame. */
+enum fmb_status motion_check(const struct fmb_placement *placement);
+
+/* Sets both orientations of a placement that was checked; without an end they are equal: those
+ * given times one power of two, the second times c. q0 has its largest component in [1, 2). Nothing
+ * is rounded. Without an orientation both are (1, 0, 0, 0). */
+void motion_quaternions(const struct fmb_placement *placement, double q0[4], double q1[4]);
+
+/* out := N(q, r), [row][column]. Each entry is a sum of four products whose magnitudes sum to at
+ * most |q| |r|, by Cauchy and Schwarz. It is off by at most 4.01 u |q| |r|. */
+INLINE void motion_polar(const double q[4], const double r[4], double out[FMB_DIM_MAX][FMB_DIM_MAX])
+{
+    const double w = q[0] * r[0], x = q[1] * r[1], y = q[2] * r[2], z = q[3] * r[3];
+    const double xy = q[1] * r[2] + q[2] * r[1], wz = q[0] * r[3] + q[3] * r[0];
+    const double xz = q[1] * r[3] + q[3] * r[1], wy = q[0] * r[2] + q[2] * r[0];
+    const double yz = q[2] * r[3] + q[3] * r[2], wx = q[0] * r[1] + q[1] * r[0];
+    out[0][0] = (w + x) - (y + z), out[1][1] = (w + y) - (x + z), out[2][2] = (w + z) - (x + y);
+    out[0][1] = xy - wz, out[1][0] = xy + wz;
+    out[0][2] = xz + wy, out[2][0] = xz - wy;
+    out[1][2] = yz - wx, out[2][1] = yz + wx;
+}
+
+#endif
