@@ -151,7 +151,8 @@ see_service/fmb/limbs := $(call fmb,number frame filter)
 see_service/fmb/gap := $(call fmb,number frame limbs)
 see_service/fmb/certificate := $(call fmb,number frame limbs gap support)
 see_service/fmb/support := $(call fmb,number frame limbs gap)
-see_service/fmb/decide := $(call fmb,number frame filter article tree limbs gap support)
+see_service/fmb/turn := $(call fmb,number frame limbs gap support)
+see_service/fmb/decide := $(call fmb,number frame filter article tree limbs gap support turn)
 see_msgs/codec := service/fmb $(GEN)
 see_msgs/bus := msgs/common
 see_msgs/common := msgs/codec service/fmb
@@ -211,7 +212,7 @@ $(O)/service/fmb/filter/instructions.o: flags += $(if $(INSTRUCTIONS),-DINSTRUCT
 # The method that the benchmark compares with handles no NaN: minima and maxima are one instruction each.
 $(O)/tests/bench/lean_sat.o: flags += -ffinite-math-only -fno-signed-zeros
 
-engine_folders := $(call fmb,number frame filter article tree limbs gap support certificate decide)
+engine_folders := $(call fmb,number frame filter article tree limbs gap support turn certificate decide)
 engine_objects_in = $(filter-out $(left_out),$(call objects_in,$1))
 engine_objects := $(call engine_objects_in,$(engine_folders))
 

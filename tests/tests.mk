@@ -5,9 +5,9 @@
 
 # The oracle shares no code with the engine, but the pair of frames that both are given.
 see_tests/oracle := service/fmb service/fmb/frame
-see_tests/campaign := tests/oracle $(call fmb,number frame filter limbs gap support decide)
+see_tests/campaign := tests/oracle $(call fmb,number frame filter limbs gap support turn decide)
 see_tests/checked := tests/campaign $(see_tests/campaign)
-see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree limbs gap support decide) \
+see_tests/bench := tests/campaign tests/oracle $(call fmb,number frame filter article tree limbs gap support turn decide) \
 	clients/common
 see_tests/bench/peers := tests/bench
 see_tests/encode := msgs/codec service/fmb service/answer
@@ -24,7 +24,7 @@ see_tests/replay := clients/replay $(see_clients/replay) tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/replay tests/hostile $(GEN)
 see_tests/fuzz/planted := tests/fuzz $(see_tests/fuzz)
 see_tests/unit/kernels := $(call fmb,number frame filter)
-see_tests/unit := $(call fmb,number frame filter article tree limbs gap support certificate decide) service clients \
+see_tests/unit := $(call fmb,number frame filter article tree limbs gap support turn certificate decide) service clients \
 	$(see_clients) tests/encode tests/oracle tests/replay tests/campaign tests/checked tests/hostile tests/mesh \
 	tests/path $(GEN)
 

@@ -222,6 +222,292 @@ static void boxes_contain_the_turning_body(void **state)
     }
 }
 
+/* ---- Verdicts ---- */
+
+enum { EPSILON_BITS = 40 };
+static const unsigned all_but_gap = FMB_WANT_TIMES;
+
+struct resting {
+    struct fmb_body body[2];
+    struct fmb_placement placement[2];
+    double memory[2][400];
+};
+
+/* Both orders of the pair have the same answer, which is returned; in a window of 2 s. */
+static enum fmb_status decide(const struct fmb_placement placement[2], struct fmb_answer *out)
+{
+    struct fmb_answer swapped;
+    const enum fmb_status status =
+        fmb_decide(fmb_method_default(), &placement[0], &placement[1], 2, all_but_gap, out);
+    assert_int_equal(
+        fmb_decide(fmb_method_default(), &placement[1], &placement[0], 2, all_but_gap, &swapped),
+        status);
+    assert_memory_equal(out, &swapped, sizeof swapped);
+    return status;
+}
+
+/* Exchanges begin and end. */
+static void reverse(struct fmb_placement *placement)
+{
+    for (int i = 0; i < 4; i++) {
+        const double q = placement->orientation[i], p = i < 3 ? placement->position[i] : 0;
+        placement->orientation[i] = placement->end_orientation[i];
+        placement->end_orientation[i] = q;
+        if (i < 3) {
+            placement->position[i] = placement->end_position[i];
+            placement->end_position[i] = p;
+        }
+    }
+}
+
+/* The verdict and the contact, also with time reversed. */
+static void expect(const struct fmb_placement placement[2], enum fmb_verdict verdict, double first,
+                   double last)
+{
+    struct fmb_placement back[2] = {placement[0], placement[1]};
+    struct fmb_answer answer;
+    assert_int_equal(decide(placement, &answer), FMB_OK);
+    assert_int_equal(answer.verdict, verdict);
+    if (verdict != FMB_SEPARATED) {
+        assert_true(answer.contact[0] <= first && answer.contact[0] >= first - 2e-12);
+        assert_true(answer.contact[1] >= last && answer.contact[1] <= last + 2e-12);
+    }
+    for (int f = 0; f < 2; f++)
+        if (back[f].end_count)
+            reverse(&back[f]);
+    assert_int_equal(decide(back, &answer), FMB_OK);
+    assert_int_equal(answer.verdict, verdict);
+    if (verdict != FMB_SEPARATED) {
+        assert_true(answer.contact[0] <= 2 - last && answer.contact[0] >= 2 - last - 2e-12);
+        assert_true(answer.contact[1] >= 2 - first && answer.contact[1] <= 2 - first + 2e-12);
+    }
+}
+
+static void box_of(double x, double y, double z, struct fmb_body *out)
+{
+    assert_int_equal(fmb_body_make(3, FMB_BOX, (const double[]){x, y, z}, 3, out), FMB_OK);
+}
+
+/* A table with its top at z = 0, and a body above it that turns about z and slides. */
+static void set_table(struct resting *rest)
+{
+    static const double q0[4] = {1, 0, 0, 0}, q1[4] = {3, 0, 0, 1};
+    box_of(10, 10, 1, &rest->body[0]);
+    rest->placement[0] = (struct fmb_placement){.body = &rest->body[0], .position = {0, 0, -0.5}};
+    rest->placement[1] = turning(&rest->body[1], q0, q1);
+    rest->placement[1].position[0] = -1, rest->placement[1].end_position[0] = 1.5;
+}
+
+/* The heights of the body at begin and end. */
+static void lift(struct resting *rest, double begin, double end)
+{
+    rest->placement[1].position[2] = begin, rest->placement[1].end_position[2] = end;
+}
+
+static void expect_resting(struct resting *rest, double half)
+{
+    const double e = ldexp(1, -EPSILON_BITS);
+    lift(rest, half, half);
+    expect(rest->placement, FMB_TOUCHING, 0, 2);
+    lift(rest, half + e, half + e);
+    expect(rest->placement, FMB_SEPARATED, 0, 0);
+    lift(rest, half - e, half - e);
+    expect(rest->placement, FMB_OVERLAPPING, 0, 2);
+    lift(rest, half, half + 1);
+    expect(rest->placement, FMB_TOUCHING, 0, 0);
+    lift(rest, half, half - e);
+    expect(rest->placement, FMB_OVERLAPPING, 0, 2);
+}
+
+static void bodies_that_yaw_and_slide_on_a_table(void **state)
+{
+    struct resting rest;
+    set_table(&rest);
+    box_of(1, 1, 1, &rest.body[1]);
+    expect_resting(&rest, 0.5);
+    assert_int_equal(
+        fmb_body_make_vertices(3, FMB_TETRAHEDRON,
+                               (const double[]){0, 0, -0.5, 1, 0, -0.5, 0, 1, -0.5, 0, 0, 1}, 12,
+                               &rest.body[1]),
+        FMB_OK);
+    expect_resting(&rest, 0.5);
+    assert_int_equal(
+        fmb_body_make_vertices(3, FMB_FACE, (const double[]){0, 0, -0.5, 1, 0, -0.5, 0, 1, 0.25}, 9,
+                               &rest.body[1]),
+        FMB_OK);
+    expect_resting(&rest, 0.5);
+}
+
+/* A prism of 50 vertices below and 50 above. */
+static void hulls_that_yaw_and_slide_on_a_table(void **state)
+{
+    struct resting rest;
+    double vertices[100][3];
+    set_table(&rest);
+    for (int i = 0; i < 100; i++) {
+        vertices[i][0] = cos(i % 50 * 0.1256), vertices[i][1] = sin(i % 50 * 0.1256);
+        vertices[i][2] = i < 50 ? -0.5 : 0.5;
+    }
+    assert_int_equal(fmb_body_make_hull(3, vertices[0], 300, rest.memory[1], &rest.body[1]),
+                     FMB_OK);
+    expect_resting(&rest, 0.5);
+}
+
+/* Both turn about one axis as one body, at rest to each other; and the same from close by. */
+static void bodies_on_one_turntable(void **state)
+{
+    static const double q0[4] = {2, 1, 0, 1}, q1[4] = {3, 0, 1, -1};
+    struct fmb_body body[2];
+    const double e = ldexp(1, -EPSILON_BITS);
+    for (int k = -1; k <= 1; k++) {
+        assert_int_equal(fmb_body_make(3, FMB_BOX, (const double[]){1, 0, 0, 1, 1, 1}, 6, &body[0]),
+                         FMB_OK);
+        assert_int_equal(
+            fmb_body_make(3, FMB_BOX, (const double[]){2 + k * e, 0.25, 0.5, 1, 2, 1}, 6, &body[1]),
+            FMB_OK);
+        const struct fmb_placement pair[2] = {turning(&body[0], q0, q1), turning(&body[1], q0, q1)};
+        expect(pair, k < 0 ? FMB_OVERLAPPING : k == 0 ? FMB_TOUCHING : FMB_SEPARATED, 0, 2);
+    }
+}
+
+/* A door that turns about an edge that it shares with a post. */
+static void doors_hang_on_their_posts(void **state)
+{
+    static const double q0[4] = {1, 0, 0, 0}, q1[4] = {1, 0, 0, 1};
+    struct fmb_body post, door;
+    const double e = ldexp(1, -EPSILON_BITS);
+    box_of(1, 1, 2, &post);
+    for (int k = -1; k <= 1; k++) {
+        assert_int_equal(
+            fmb_body_make(3, FMB_BOX, (const double[]){0.5 + k * e, 0.125 + k * e, 0, 1, 0.25, 2},
+                          6, &door),
+            FMB_OK);
+        struct fmb_placement pair[2] = {turning(&door, q0, q1),
+                                        {.body = &post, .position = {-0.5, -0.5, 0}}};
+        if (k == 0) {
+            expect(pair, FMB_TOUCHING, 0, 2);
+        } else if (k > 0) {
+            /* The corner moves in front of the post while it turns. */
+            struct fmb_answer answer;
+            assert_int_equal(decide(pair, &answer), FMB_OK);
+            assert_int_equal(answer.verdict, FMB_SEPARATED);
+        }
+    }
+}
+
+/* A cube that tumbles over an edge on the table. */
+static void cubes_tumble_over_an_edge(void **state)
+{
+    static const double q0[4] = {1, 0, 0, 0}, q1[4] = {1, 0, 1, 0};
+    struct resting rest;
+    const double e = ldexp(1, -EPSILON_BITS);
+    set_table(&rest);
+    assert_int_equal(
+        fmb_body_make(3, FMB_BOX, (const double[]){-0.5, 0, 0.5, 1, 1, 1}, 6, &rest.body[1]),
+        FMB_OK);
+    rest.placement[1] = turning(&rest.body[1], q0, q1);
+    lift(&rest, 0, 0);
+    expect(rest.placement, FMB_TOUCHING, 0, 2);
+    lift(&rest, e, e);
+    expect(rest.placement, FMB_SEPARATED, 0, 0);
+    lift(&rest, -e, -e);
+    expect(rest.placement, FMB_OVERLAPPING, 0, 2);
+}
+
+/* A point passes through a plate that turns, at an irrational time: the interiors meet, which no
+ * time that is looked at shows. */
+static void a_point_through_a_turning_plate_is_never_called_touching(void **state)
+{
+    static const double q0[4] = {4, 0, 0, 0}, q1[4] = {4, 1, 0, 0};
+    static const double plate_vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    struct fmb_body plate, point;
+    double memory[2][64];
+    struct fmb_answer answer;
+    assert_int_equal(fmb_body_make_hull(3, plate_vertices, 12, memory[0], &plate), FMB_OK);
+    assert_int_equal(
+        fmb_body_make_hull(3, (const double[]){0.25, 0.625, 0.125}, 3, memory[1], &point), FMB_OK);
+    const struct fmb_placement pair[2] = {turning(&plate, q0, q1), {.body = &point}};
+    assert_int_equal(decide(pair, &answer), FMB_CANNOT_DECIDE);
+}
+
+/* Windows that share a pose find the contact at the seam both. */
+static void windows_join(void **state)
+{
+    static const double q0[4] = {1, 0, 0, 0}, q1[4] = {3, 0, 0, 1}, q2[4] = {2, 1, 0, 1};
+    struct resting rest;
+    set_table(&rest);
+    box_of(1, 1, 1, &rest.body[1]);
+    rest.placement[1] = turning(&rest.body[1], q0, q1);
+    lift(&rest, 1.5, 0.5);
+    expect(rest.placement, FMB_TOUCHING, 2, 2);
+    rest.placement[1] = turning(&rest.body[1], q1, q2);
+    lift(&rest, 0.5, 2.5);
+    struct fmb_answer answer;
+    assert_int_equal(decide(rest.placement, &answer), FMB_OK);
+    assert_true(answer.verdict != FMB_SEPARATED && answer.contact[0] == 0);
+}
+
+/* A straight motion that is given as an end has the verdict, and nearly the contact, of the
+ * velocity. */
+static void straight_motion_as_an_end(void **state)
+{
+    uint64_t seed = 3;
+    int counts[4] = {0};
+    for (int k = 0; k < 300; k++) {
+        double number[12];
+        for (int i = 0; i < 12; i++) {
+            seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407;
+            number[i] = (double) (seed >> 60) / 4 - 2;
+        }
+        struct fmb_body body[2];
+        box_of(fabs(number[0]) + 0.5, fabs(number[1]) + 0.5, 1, &body[0]);
+        box_of(1, 1, fabs(number[2]), &body[1]);
+        struct fmb_placement pair[2] = {
+            {.body = &body[0], .orientation_count = 4, .orientation = {2, 1, 0, 0}},
+            {.body = &body[1], .position = {number[3], number[4], number[5]}}};
+        struct fmb_answer by_end, by_velocity;
+        memcpy(pair[1].velocity, &number[6], sizeof pair[1].velocity);
+        assert_int_equal(decide(pair, &by_velocity), FMB_OK);
+        for (int axis = 0; axis < 3; axis++) {
+            pair[1].end_position[axis] = pair[1].position[axis] + 2 * pair[1].velocity[axis];
+            pair[1].velocity[axis] = 0;
+        }
+        pair[1].end_count = 3;
+        const enum fmb_status status = decide(pair, &by_end);
+        if (status == FMB_CANNOT_DECIDE) { /* touches at one time */
+            assert_int_equal(by_velocity.verdict, FMB_TOUCHING);
+            counts[0]++;
+            continue;
+        }
+        counts[by_end.verdict]++;
+        assert_int_equal(by_end.verdict, by_velocity.verdict);
+        for (int end = 0; end < 2 && by_end.has_contact; end++)
+            assert_float_equal(by_end.contact[end], by_velocity.contact[end], 4e-12);
+    }
+    assert_true(counts[FMB_SEPARATED] > 30 && counts[FMB_OVERLAPPING] > 30 && counts[0] < 5);
+}
+
+/* Bodies whose numbers span the range of doubles are left to integers, or have no answer. */
+static void numbers_of_any_size(void **state)
+{
+    static const double q0[4] = {1, 0, 0, 0}, q1[4] = {3, 0, 0, 1};
+    struct resting rest;
+    for (int exponent = -1000; exponent <= 900; exponent += 380) {
+        const double scale = ldexp(1, exponent);
+        box_of(10 * scale, 10 * scale, scale, &rest.body[0]);
+        box_of(scale, scale, scale, &rest.body[1]);
+        rest.placement[0] =
+            (struct fmb_placement){.body = &rest.body[0], .position = {0, 0, -0.5 * scale}};
+        rest.placement[1] = turning(&rest.body[1], q0, q1);
+        lift(&rest, 0.5 * scale, 0.5 * scale);
+        expect(rest.placement, FMB_TOUCHING, 0, 2);
+        lift(&rest, 0.75 * scale, 0.75 * scale);
+        expect(rest.placement, FMB_SEPARATED, 0, 2);
+        lift(&rest, 0.25 * scale, 0.25 * scale);
+        expect(rest.placement, FMB_OVERLAPPING, 0, 2);
+    }
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -230,6 +516,15 @@ int main(void)
         cmocka_unit_test(an_end_needs_a_window),
         cmocka_unit_test(an_instant_takes_the_pose_at_the_beginning),
         cmocka_unit_test(boxes_contain_the_turning_body),
+        cmocka_unit_test(bodies_that_yaw_and_slide_on_a_table),
+        cmocka_unit_test(hulls_that_yaw_and_slide_on_a_table),
+        cmocka_unit_test(bodies_on_one_turntable),
+        cmocka_unit_test(doors_hang_on_their_posts),
+        cmocka_unit_test(cubes_tumble_over_an_edge),
+        cmocka_unit_test(a_point_through_a_turning_plate_is_never_called_touching),
+        cmocka_unit_test(windows_join),
+        cmocka_unit_test(straight_motion_as_an_end),
+        cmocka_unit_test(numbers_of_any_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

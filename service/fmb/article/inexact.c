@@ -21,8 +21,8 @@ static void set_inverse(const struct placed_frame *placed, struct inexact_pair *
 bool inexact_pair_of(const struct frame_pair *pair, struct inexact_pair *out)
 {
     struct fmb_prepared a, b;
-    if (pair->a.frame->flat || pair->b.frame->flat ||
-        support_takes(pair->a.frame, pair->b.frame) || pair_turns(pair))
+    if (pair->a.frame->flat || pair->b.frame->flat || support_takes(pair->a.frame, pair->b.frame) ||
+        pair_turns(pair))
         return false;
     prepared_set(pair->a, &a);
     prepared_set(pair->b, &b);

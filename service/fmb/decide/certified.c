@@ -27,6 +27,7 @@
 
 #include "gap.h"
 #include "kernel.h"
+#include "memory.h"
 
 #include <math.h>
 #include <string.h>
@@ -361,6 +362,7 @@ INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared 
                        enum support_effort effort, struct certified *out, struct fmb_answer *answer)
 {
     support_decision_none(&out->program);
+    out->turning = NULL;
     if ((pair->a.placement->end_count | pair->b.placement->end_count) != 0)
         return begin_with_end(pair, want, farthest, effort, out, answer);
     if (effort == SUPPORT_PROGRAMS || support_takes(pair->a.frame, pair->b.frame)) {
@@ -383,14 +385,30 @@ INLINE bool begin_pair(const struct frame_pair *pair, const struct fmb_prepared 
                            : begin_program(out, want & (FMB_WANT_BOX | FMB_WANT_TIMES));
 }
 
+static void end_turning(struct certified *certified)
+{
+    if (!certified->turning)
+        return;
+    turn_end(certified->turning);
+    memory_release(certified->turning, sizeof *certified->turning);
+    certified->turning = NULL;
+}
+
 /* Begins the decision of a pair of which a placement has an end. */
 static bool begin_with_end(const struct frame_pair *pair, unsigned want, double farthest,
                            enum support_effort effort, struct certified *out,
                            struct fmb_answer *answer)
 {
     if (pair->duration > 0) {
-        out->stage = CERTIFIED_ALL;
-        return true;
+        struct turn_decision bounded;
+        const bool quick = effort == SUPPORT_QUICK;
+        out->stage = CERTIFIED_TURNING;
+        if (!quick)
+            out->turning = memory_allocate(sizeof *out->turning);
+        const bool done = turn_begin(pair, want, quick, quick ? &bounded : out->turning, answer);
+        if (done)
+            end_turning(out);
+        return done;
     }
     const struct placed_frame *const given[2] = {&pair->a, &pair->b};
     struct frame_pair still = *pair;
@@ -413,6 +431,12 @@ bool certified_begin(const struct fmb_prepared *a, const struct fmb_prepared *b,
 
 bool certified_step(struct certified *certified, struct fmb_answer *answer)
 {
+    if (certified->stage == CERTIFIED_TURNING) {
+        const bool done = turn_step(certified->turning, answer);
+        if (done)
+            end_turning(certified);
+        return done;
+    }
     if (certified->stage != CERTIFIED_MISSING)
         return support_decision_step(&certified->program, answer);
     if (!support_decision_step(&certified->program, &certified->proven))
@@ -424,6 +448,7 @@ bool certified_step(struct certified *certified, struct fmb_answer *answer)
 void certified_end(struct certified *certified)
 {
     support_decision_end(&certified->program);
+    end_turning(certified);
 }
 
 void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,

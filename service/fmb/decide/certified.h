@@ -21,6 +21,7 @@
 #include "kernel.h"
 #include "limbs.h"
 #include "support_decision.h"
+#include "turn.h"
 
 /* The rungs: what may decide a verdict, in the order in which it is tried. The filter; its second
  * pass; the slabs that these leave open, in integers; all slabs, in integers; the programs. */
@@ -41,7 +42,8 @@ struct certified {
     unsigned want;
     /* What the programs compute: the whole answer; what is missing of contact and box; gap and
      * point. */
-    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP_AND_POINT } stage;
+    enum { CERTIFIED_ALL, CERTIFIED_MISSING, CERTIFIED_GAP_AND_POINT, CERTIFIED_TURNING } stage;
+    struct turn_decision *turning; /* allocated for the decision of a pair that turns, or NULL */
     struct fmb_placement begin[2]; /* in a window of 0 s: the placements without their ends */
     struct support_decision program;
     struct fmb_answer proven; /* by programs: verdict, contact and box */

@@ -1,0 +1,484 @@
+#include "turn.h"
+
+#include "programs.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Intervals this short are left to integers, which divide them until they are of the least length.
+ * Relative to the window, an end of a contact is at most this far out. */
+static const double short_interval = 0x1p-41, least_interval = 0x1p-50;
+
+enum {
+    LOOKS_MAX = 4000, /* of a decision, then it has no verdict */
+    LOOKS_BOUNDED = 200,
+    LOOKS_STEP = 64
+};
+
+void turn_none(struct turn_decision *out)
+{
+    out->programs = NULL;
+    out->has_exact = false;
+    out->phase = TURN_COMPLETE;
+}
+
+void turn_end(struct turn_decision *decision)
+{
+    if (decision->programs)
+        programs_end(decision->programs, NULL);
+    if (decision->has_exact)
+        turn_exact_end(&decision->exact);
+    turn_none(decision);
+}
+
+/* ---- Verdicts at one time ---- */
+
+static void remember(struct turn_decision *decision, double at, enum fmb_verdict verdict)
+{
+    decision->known[decision->next_known].at = at;
+    decision->known[decision->next_known].verdict = verdict;
+    decision->next_known = (decision->next_known + 1) % TURN_KNOWN;
+}
+
+static void begin_programs(struct turn_decision *decision, double s, bool nearest)
+{
+    struct support_pair *pair = &decision->path.pair;
+    struct support_column first[FMB_DIM_MAX + 1];
+    const bool guessed = pair->usable && decision->looked == s;
+    const unsigned count = guessed ? support_columns(&decision->nearest.simplex, first) : 0;
+    turn_path_pose(&decision->path, s);
+    decision->programs = nearest || pair->rounded
+                             ? programs_begin_nearest(pair, false, first, count)
+                             : programs_begin(pair, 0, first, count);
+}
+
+/* Looks in doubles. Returns the verdict, or 0. */
+static enum fmb_verdict look(struct turn_decision *decision, double s)
+{
+    enum fmb_verdict verdict = 0;
+    if (decision->path.pair.usable) {
+        verdict = turn_look(&decision->path, s, decision->toward, &decision->nearest);
+        decision->looks++;
+        decision->looked = s;
+        decision->sure = verdict != 0;
+    }
+    if (verdict)
+        remember(decision, s, verdict);
+    if (verdict == FMB_SEPARATED)
+        memcpy(decision->toward, decision->nearest.direction, sizeof decision->toward);
+    return verdict;
+}
+
+/* Returns the verdict at s if it is known or doubles give it. Otherwise begins the programs, unless
+ * the decision is bounded, and returns 0: the verdict is known when they have ended. */
+static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
+{
+    for (unsigned k = 0; k < TURN_KNOWN; k++)
+        if (decision->known[k].at == s)
+            return decision->known[k].verdict;
+    const enum fmb_verdict verdict = look(decision, s);
+    if (verdict == 0 && !decision->bounded)
+        begin_programs(decision, s, false);
+    decision->exhausted = decision->exhausted || (verdict == 0 && decision->bounded);
+    return verdict;
+}
+
+/* ---- Directions by vertices ---- */
+
+static void add_corners(struct turn_decision *decision, int of, unsigned v0, unsigned v1,
+                        unsigned v2, unsigned v3)
+{
+    if (decision->corner_count + 2 > TURN_CORNERS)
+        return;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        decision->corners[decision->corner_count] =
+            (struct turn_corners){of, {(uint16_t) v0, (uint16_t) v1, (uint16_t) v2, (uint16_t) v3}};
+        decision->sign[decision->corner_count++] = (signed char) sign;
+    }
+}
+
+/* Vertices of a frame among which its faces and edges are sought. */
+struct turn_features {
+    uint16_t vertex[FMB_HULL_VERTICES_MAX];
+    unsigned count;
+    unsigned char edge[32][2]; /* indices of vertex */
+    unsigned edges;
+};
+
+enum { NEAR_VERTICES = 6 };
+
+/* Sets the vertices of a frame of few vertices, or those of a hull near the nearest point. Edges
+ * are all pairs of them; of a cuboid its components. */
+static void set_features(const struct turn_decision *decision, int f, struct turn_features *out)
+{
+    const struct support_view *view = &decision->path.pair.view[f];
+    const struct fmb_frame *frame = view->placed.frame;
+    out->count = view->vertices.count;
+    out->edges = 0;
+    if (frame->shape == FMB_CUBOID || frame->shape == FMB_BOX) {
+        out->count = 1 + (unsigned) frame->count;
+        for (unsigned i = 0; i < out->count; i++)
+            out->vertex[i] = (uint16_t) (i == 0 ? 0 : 1u << (i - 1));
+        for (unsigned i = 1; i < out->count; i++) {
+            out->edge[out->edges][0] = 0;
+            out->edge[out->edges++][1] = (unsigned char) i;
+        }
+        return;
+    }
+    for (unsigned i = 0; i < out->count; i++)
+        out->vertex[i] = (uint16_t) i;
+    if (out->count > NEAR_VERTICES) {
+        double n[FMB_DIM_MAX];
+        turn_body_direction(view, decision->toward, n);
+        out->count = turn_farthest(view, n, f ? -1 : 1, out->vertex);
+        /* Far apart in the list: neighbours may be nearly on one line. */
+        for (unsigned i = 0; out->count > NEAR_VERTICES && i < NEAR_VERTICES; i++)
+            out->vertex[i] = out->vertex[i * out->count / NEAR_VERTICES];
+        out->count = out->count < NEAR_VERTICES ? out->count : NEAR_VERTICES;
+    }
+    for (unsigned i = 0; i < out->count; i++)
+        for (unsigned j = i + 1; j < out->count; j++) {
+            out->edge[out->edges][0] = (unsigned char) i;
+            out->edge[out->edges++][1] = (unsigned char) j;
+        }
+}
+
+/* Drops the directions that doubles know not to separate the frames over an interval. */
+static void filter_corners(struct turn_decision *decision, struct turn_interval interval)
+{
+    const struct support_view *view = decision->path.pair.view;
+    unsigned kept = 0;
+    for (unsigned k = 0; k < decision->corner_count; k++) {
+        const struct turn_corners corners = decision->corners[k];
+        struct turn_direction direction = {.of = corners.of};
+        turn_direction_of(view, &corners, &direction);
+        if (decision->path.pair.usable &&
+            !turn_may_separate(&decision->path, &direction, decision->sign[k], interval.lo,
+                               interval.hi))
+            continue;
+        decision->corners[kept] = corners;
+        decision->sign[kept++] = decision->sign[k];
+    }
+    decision->corner_count = kept;
+}
+
+/* Lists the directions to be tried over an interval. Those of cores do not decide frames with a
+ * radius. */
+static void begin_corners(struct turn_decision *decision, struct turn_interval interval)
+{
+    struct turn_features of[2];
+    const int dim = decision->path.pair.dim;
+    decision->stage = TURN_CORNER;
+    decision->outcome = TURN_OPEN;
+    decision->corner = decision->corner_count = 0;
+    if (decision->path.pair.rounded)
+        return;
+    for (int f = 0; f < 2; f++) {
+        set_features(decision, f, &of[f]);
+        const struct turn_features *on = &of[f];
+        for (unsigned i = 0; i < on->count; i++)
+            for (unsigned j = i + 1; j < on->count; j++) {
+                if (dim == 2)
+                    add_corners(decision, f, on->vertex[i], on->vertex[j], 0, 0);
+                for (unsigned k = j + 1; k < on->count && dim == 3; k++)
+                    if (on->edges > on->count || i == 0)
+                        add_corners(decision, f, on->vertex[i], on->vertex[j], on->vertex[k], 0);
+            }
+    }
+    filter_corners(decision, interval);
+    const unsigned faces = decision->corner_count;
+    for (unsigned i = 0; i < of[0].edges && dim == 3; i++)
+        for (unsigned j = 0; j < of[1].edges; j++)
+            add_corners(decision, 2, of[0].vertex[of[0].edge[i][0]], of[0].vertex[of[0].edge[i][1]],
+                        of[1].vertex[of[1].edge[j][0]], of[1].vertex[of[1].edge[j][1]]);
+    if (decision->corner_count > faces)
+        filter_corners(decision, interval);
+    if (!decision->has_exact) {
+        turn_exact_begin(&decision->path, &decision->exact);
+        decision->has_exact = true;
+    }
+}
+
+/* ---- Intervals ---- */
+
+static void push(struct turn_decision *decision, double lo, double hi)
+{
+    if (lo < hi)
+        decision->stack[decision->count++] = (struct turn_interval){lo, hi};
+}
+
+/* Replaces all intervals by those on the side that is sought of the known contact. limit: all times
+ * before it (TURN_LAST: after it) are known to have none. */
+static void seek_end(struct turn_decision *decision, double limit)
+{
+    decision->count = 0;
+    decision->stage = TURN_LOOK;
+    if (decision->phase == TURN_LAST)
+        push(decision, decision->in[1], limit);
+    else
+        push(decision, limit, decision->in[0]);
+}
+
+/* Takes a contact at s into account. interval: the one in progress, which contains s. Returns
+ * whether the intervals have changed. */
+static bool add_contact(struct turn_decision *decision, double s, enum fmb_verdict verdict,
+                        struct turn_interval interval)
+{
+    const bool first = s < decision->in[0];
+    decision->in[0] = fmin(decision->in[0], s);
+    decision->in[1] = fmax(decision->in[1], s);
+    if (verdict == FMB_OVERLAPPING && !decision->overlaps) {
+        decision->overlaps = true;
+        decision->overlap = s;
+    }
+    if (decision->phase == TURN_VERDICT && decision->overlaps) {
+        decision->phase =
+            decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX) ? TURN_FIRST : TURN_POINT;
+        decision->count = 0;
+        decision->stage = TURN_LOOK;
+        if (first && decision->phase == TURN_FIRST)
+            seek_end(decision, interval.lo);
+        return true;
+    }
+    if (decision->phase == TURN_FIRST)
+        seek_end(decision, interval.lo);
+    if (decision->phase == TURN_LAST)
+        seek_end(decision, interval.hi);
+    return decision->phase != TURN_VERDICT;
+}
+
+static void pop(struct turn_decision *decision)
+{
+    decision->count--;
+    decision->stage = TURN_LOOK;
+}
+
+/* Divides the interval in progress; the half that is next in order comes last. */
+static void divide(struct turn_decision *decision, struct turn_interval interval)
+{
+    const double middle = 0.5 * (interval.lo + interval.hi);
+    pop(decision);
+    if (decision->phase == TURN_LAST)
+        push(decision, interval.lo, middle);
+    push(decision, middle, interval.hi);
+    if (decision->phase != TURN_LAST)
+        push(decision, interval.lo, middle);
+}
+
+static void give_up(struct turn_decision *decision)
+{
+    decision->undecided = true;
+    pop(decision);
+}
+
+/* Looks at the middle of an interval. */
+static void look_at(struct turn_decision *decision, struct turn_interval interval)
+{
+    const double middle = 0.5 * (interval.lo + interval.hi), width = interval.hi - interval.lo;
+    struct turn_direction direction[2];
+    const enum fmb_verdict verdict = verdict_at(decision, middle);
+    const bool sure = decision->looked == middle && decision->sure;
+    if (verdict == 0)
+        return;
+    if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
+        return;
+    if (verdict == FMB_SEPARATED && sure) {
+        const unsigned count =
+            turn_directions(&decision->path, decision->nearest.direction, direction);
+        for (unsigned k = 0; k < count; k++)
+            if (turn_distance(&decision->path, &direction[k], interval.lo, interval.hi) > 0) {
+                pop(decision);
+                return;
+            }
+        if (width > short_interval) {
+            divide(decision, interval);
+            return;
+        }
+    }
+    /* Short, and next to the contact that is known: its end is enclosed. */
+    if (width <= short_interval && decision->phase == TURN_FIRST && interval.hi == decision->in[0])
+        decision->out[0] = fmin(decision->out[0], interval.lo), pop(decision);
+    else if (width <= short_interval && decision->phase == TURN_LAST &&
+             interval.lo == decision->in[1])
+        decision->out[1] = fmax(decision->out[1], interval.hi), pop(decision);
+    else if (decision->bounded)
+        decision->exhausted = true;
+    else
+        begin_corners(decision, interval);
+}
+
+static void try_corner(struct turn_decision *decision, struct turn_interval interval)
+{
+    if (decision->corner < decision->corner_count && decision->outcome != TURN_APART &&
+        decision->outcome != TURN_CLEAN) {
+        const unsigned k = decision->corner++;
+        const enum turn_outcome outcome = turn_exact_outcome(
+            &decision->exact, &decision->corners[k], decision->sign[k], interval.lo, interval.hi);
+        if (outcome != TURN_OPEN)
+            decision->outcome = outcome;
+        return;
+    }
+    if (decision->outcome == TURN_APART)
+        pop(decision);
+    else if (decision->outcome != TURN_OPEN)
+        decision->stage = TURN_ENDS;
+    else if (interval.hi - interval.lo <= least_interval)
+        give_up(decision);
+    else
+        divide(decision, interval);
+}
+
+/* The frames do not overlap in the interval. Looks at its ends. */
+static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
+{
+    const double middle = 0.5 * (interval.lo + interval.hi);
+    const bool rests = decision->outcome == TURN_REST;
+    const enum fmb_verdict at_lo = verdict_at(decision, interval.lo);
+    const enum fmb_verdict at_hi = at_lo ? verdict_at(decision, interval.hi) : 0;
+    const enum fmb_verdict inside = at_hi ? verdict_at(decision, middle) : 0;
+    if (!inside)
+        return;
+    if (at_lo != FMB_SEPARATED && add_contact(decision, interval.lo, at_lo, interval))
+        return;
+    if (at_hi != FMB_SEPARATED && add_contact(decision, interval.hi, at_hi, interval))
+        return;
+    const bool both = at_lo != FMB_SEPARATED && at_hi != FMB_SEPARATED;
+    const bool any = at_lo != FMB_SEPARATED || at_hi != FMB_SEPARATED || inside != FMB_SEPARATED;
+    if (!rests || both) {
+        pop(decision);
+    } else if (interval.hi - interval.lo > short_interval) {
+        divide(decision, interval);
+    } else if (any) {
+        decision->out[0] = fmin(decision->out[0], interval.lo);
+        decision->out[1] = fmax(decision->out[1], interval.hi);
+        pop(decision);
+    } else if (interval.hi - interval.lo > least_interval) {
+        divide(decision, interval);
+    } else {
+        give_up(decision);
+    }
+}
+
+/* ---- Answers ---- */
+
+/* Returns the time of a fraction, rounded down or up; at most the duration. */
+static double seconds(double s, double duration, bool up)
+{
+    const double time = s * duration, error = fma(s, duration, -time);
+    if (s == 0 || s == 1)
+        return time + 0.0;
+    if (time >= 0x1p-900 && (up ? error <= 0 : error >= 0))
+        return time;
+    return fmin(nextafter(time, up ? INFINITY : 0), duration);
+}
+
+/* Begins the next phase, after the intervals of one are done. */
+static void next_phase(struct turn_decision *decision)
+{
+    if (decision->phase == TURN_VERDICT) {
+        decision->phase = TURN_POINT;
+    } else if (decision->phase == TURN_FIRST) {
+        decision->phase = TURN_LAST;
+        decision->toward[0] = decision->toward[1] = decision->toward[2] = 0;
+        if (decision->in[1] < 1 && look(decision, 1) > FMB_SEPARATED)
+            decision->in[1] = 1;
+        seek_end(decision, 1);
+    } else {
+        decision->phase = TURN_POINT;
+    }
+}
+
+/* Sets the answer. Returns whether it is complete; else the programs compute the point. */
+static bool finish(struct turn_decision *decision, struct fmb_answer *answer)
+{
+    const double duration = decision->frames.duration;
+    const bool meets = decision->in[0] <= decision->in[1];
+    const bool ends = decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX);
+    if (decision->undecided && (!decision->overlaps || ends)) {
+        turn_end(decision);
+        return true;
+    }
+    answer->verdict = decision->overlaps ? FMB_OVERLAPPING : meets ? FMB_TOUCHING : FMB_SEPARATED;
+    if (meets && decision->want & FMB_WANT_TIMES) {
+        answer->has_contact = true;
+        answer->contact[0] = seconds(fmin(decision->in[0], decision->out[0]), duration, false);
+        answer->contact[1] = seconds(fmax(decision->in[1], decision->out[1]), duration, true);
+    }
+    if (meets && decision->want & FMB_WANT_POINT && !decision->bounded) {
+        answer->has_point = true;
+        begin_programs(decision, decision->overlaps ? decision->overlap : decision->in[0], true);
+        return false;
+    }
+    turn_end(decision);
+    return true;
+}
+
+static bool take_programs(struct turn_decision *decision, struct fmb_answer *answer)
+{
+    struct programs *programs = decision->programs;
+    const double at = decision->path.pair.at;
+    if (decision->phase == TURN_POINT) {
+        programs_nearest_point(programs, answer->point);
+        answer->point[0] = seconds(at, decision->frames.duration, false);
+        turn_end(decision);
+        return true;
+    }
+    remember(decision, at, programs_proof(programs)->verdict);
+    programs_end(programs, NULL);
+    decision->programs = NULL;
+    return false;
+}
+
+bool turn_step(struct turn_decision *decision, struct fmb_answer *answer)
+{
+    const unsigned limit = decision->bounded ? LOOKS_BOUNDED : decision->looks + LOOKS_STEP;
+    if (decision->programs)
+        return programs_step(decision->programs) && take_programs(decision, answer);
+    while (decision->looks < limit && !decision->exhausted) {
+        if (decision->phase == TURN_POINT)
+            return finish(decision, answer);
+        if (decision->looks > LOOKS_MAX) {
+            decision->undecided = true;
+            decision->count = 0;
+        }
+        if (decision->count == 0) {
+            next_phase(decision);
+            continue;
+        }
+        const struct turn_interval interval = decision->stack[decision->count - 1];
+        if (decision->stage == TURN_LOOK) {
+            look_at(decision, interval);
+        } else if (decision->stage == TURN_CORNER) {
+            try_corner(decision, interval);
+            return false;
+        } else {
+            look_at_ends(decision, interval);
+        }
+        if (decision->programs)
+            return false;
+    }
+    return false;
+}
+
+bool turn_begin(const struct frame_pair *frames, unsigned want, bool bounded,
+                struct turn_decision *out, struct fmb_answer *answer)
+{
+    out->swapped = support_order(frames, &out->frames);
+    out->want = want;
+    out->bounded = bounded;
+    out->overlaps = out->undecided = out->exhausted = out->has_exact = out->sure = false;
+    out->phase = TURN_VERDICT;
+    out->stage = TURN_LOOK;
+    out->programs = NULL;
+    out->looks = out->next_known = 0;
+    out->looked = -1;
+    out->toward[0] = out->toward[1] = out->toward[2] = 0;
+    for (int k = 0; k < TURN_KNOWN; k++)
+        out->known[k].at = -1;
+    out->in[0] = out->out[0] = INFINITY;
+    out->in[1] = out->out[1] = -INFINITY;
+    out->count = 0;
+    push(out, 0, 1);
+    turn_path_set(&out->frames, &out->path);
+    return turn_step(out, answer);
+}

@@ -1,0 +1,85 @@
+/* Pairs of frames of which a placement has an end: verdict, contact, box and point.
+ *
+ * The window is divided into intervals of s = t / T whose ends are multiples of 2^-50. In order of
+ * time, and each in the middle first:
+ *
+ *   doubles   a search at the middle (turn_look()) proves an overlap, or gives a direction. The
+ *             direction may prove that the frames are apart over the interval (turn_distance());
+ *             otherwise it is divided.
+ *   integers  if the search is unsure, or an interval is shorter than 2^-41: the exact verdict at
+ *             the middle, by the programs, and directions given by vertices over the interval, by
+ *             their exact polynomials (turn_exact.h): of frames of few vertices all normals of
+ *             faces and all products of edges, of hulls those near the nearest point.
+ *
+ * The verdict is OVERLAPPING if the frames overlap at a time that was looked at; otherwise the
+ * intervals cover the window, and the frames do not overlap in any of them: they touch if they do
+ * at a time that was looked at. What integers do not decide at the shortest intervals has no
+ * verdict: frames that touch at a single time that is not an end of an interval, frames that cross
+ * at such a time and are not transversal, and frames with a radius that doubles leave open.
+ *
+ * The contact is enclosed from both sides: on each, the frames are apart up to a time at most 2^-41
+ * from one at which they meet.
+ *
+ * Steps: a search in doubles takes microseconds, one exact direction of a small pair tens of them,
+ * a step of the programs less than a millisecond. No shared state. */
+#ifndef FMB_TURN_H
+#define FMB_TURN_H
+
+#include "turn_exact.h"
+
+struct programs;
+
+enum { TURN_DEPTH = 50, TURN_STACK = TURN_DEPTH + 4, TURN_KNOWN = 8, TURN_CORNERS = 512 };
+
+struct turn_interval {
+    double lo, hi;
+};
+
+/* A decision in progress. It points into itself: not to be copied. */
+struct turn_decision {
+    struct frame_pair frames; /* in the order of support_order() */
+    unsigned want;
+    bool swapped, bounded, overlaps, undecided, exhausted;
+    enum { TURN_VERDICT, TURN_FIRST, TURN_LAST, TURN_POINT, TURN_COMPLETE } phase;
+    enum { TURN_LOOK, TURN_CORNER, TURN_ENDS } stage;
+    struct turn_path path;
+    struct support_nearest nearest; /* of the last look */
+    double looked, toward[FMB_DIM_MAX];
+    bool sure; /* the last look gave a verdict */
+    unsigned looks;
+    struct turn_interval stack[TURN_STACK]; /* the next one last */
+    int count;
+    double in[2], out[2]; /* known times of contact, and what encloses all */
+    double overlap;       /* a time of overlap */
+    struct {
+        double at;
+        enum fmb_verdict verdict;
+    } known[TURN_KNOWN]; /* verdicts at times looked at */
+    unsigned next_known;
+    struct turn_exact exact;
+    bool has_exact;
+    struct programs *programs; /* of the pose of the path */
+    struct turn_corners corners[TURN_CORNERS];
+    signed char sign[TURN_CORNERS];
+    unsigned corner, corner_count;
+    enum turn_outcome outcome; /* the strongest of the corners tried */
+};
+
+/* Sets a decision that is complete. */
+void turn_none(struct turn_decision *out);
+
+/* Begins the decision of a checked pair. bounded: only what takes tens of microseconds, without
+ * allocation. Returns whether it is complete, with *answer set: without a verdict if it cannot be
+ * decided. If not, a bounded decision has ended; for any other, call turn_step() until it returns
+ * true. In: *answer is all 0. */
+bool turn_begin(const struct frame_pair *frames, unsigned want, bool bounded,
+                struct turn_decision *out, struct fmb_answer *answer);
+
+/* Performs a step of less than a millisecond. Returns whether the decision is complete, with
+ * *answer set; its memory is then freed. */
+bool turn_step(struct turn_decision *decision, struct fmb_answer *answer);
+
+/* Frees the memory of a decision, complete or not. */
+void turn_end(struct turn_decision *decision);
+
+#endif

@@ -1,0 +1,35 @@
+/* Directions that separate a pair that turns over an interval, in integers: the polynomials of
+ * turn_path.h, of directions given by vertices. No shared state. */
+#ifndef FMB_TURN_EXACT_H
+#define FMB_TURN_EXACT_H
+
+#include "support_integers.h"
+#include "turn_path.h"
+
+/* What an interval is for a direction. */
+enum turn_outcome {
+    TURN_OPEN,  /* not known */
+    TURN_APART, /* the frames are apart */
+    TURN_CLEAN, /* apart inside the interval; they may touch at its ends, and do not overlap there
+                 */
+    TURN_REST   /* they may touch, and do not overlap */
+};
+
+struct turn_exact {
+    const struct turn_path *path;
+    struct support_integers integers;
+    long unit; /* of lengths */
+    mpz_t q[2][2][4], offset[3], drift[3];
+};
+
+/* Sets the integers of a pair, which allocates through GMP until turn_exact_end(). */
+void turn_exact_begin(const struct turn_path *path, struct turn_exact *out);
+void turn_exact_end(struct turn_exact *exact);
+
+/* Returns what a direction, or its opposite if sign is -1, proves of the closed interval [lo, hi],
+ * both multiples of 2^-53. It allocates and frees through GMP. */
+enum turn_outcome turn_exact_outcome(const struct turn_exact *exact,
+                                     const struct turn_corners *corners, int sign, double lo,
+                                     double hi);
+
+#endif

@@ -1,0 +1,106 @@
+/* A pair of frames of which a placement has an end, in doubles: poses within the window, and
+ * directions that separate the frames over an interval of it. Times are fractions s = t / T.
+ *
+ * A direction n turns with A, or with B, or is the product of an edge of each. The frames are apart
+ * over an interval if n . (b - a) > 0 for all vertices a of A and b of B at all its times. Let q be
+ * the quaternions, linear in s, N(q) = |q|^2 R(q), and D the difference of the positions, linear
+ * too. Times |q_A|^2 |q_B|^2, which is positive, n . (b - a) is a polynomial of degree 5 in s:
+ *
+ *   n = N_A m, m fixed in A   |q_B|^2 n . D + n . (N_B b) - |q_A|^2 |q_B|^2 m . a
+ *   n = N_B m, m fixed in B   |q_A|^2 n . D - n . (N_A a) + |q_A|^2 |q_B|^2 m . b
+ *   n = N_A e x N_B f         n . D + (x x f) . b + (y x e) . a,  x = N_B^T N_A e, y = N_A^T N_B f
+ *
+ * (in the last, already times one factor each, since N u x N v = |q|^2 N (u x v)). A polynomial is
+ * sum_k c_k s^k (1 - s)^(5 - k) over an interval mapped to [0, 1]: its Bernstein coefficients times
+ * binomials, called coefficients below. They are convolutions of those of the factors (motion.h),
+ * and linear in a and b. If the least of each coefficient over all a and b, a support in one
+ * direction, is positive, so is every polynomial on the closed interval. What is constant in the
+ * frame of the direction takes a single interval.
+ *
+ * Accuracy, with u = 2^-53, L_A the greatest |q_A|^2 of both ends of the interval and r the
+ * reaches.
+ *
+ *   q(s)   (1 - s) q0 + s q1 passes two roundings a component; since q0 . q1 > 0, (1 - s) |q0| +
+ *          s |q1| <= sqrt(2) |q(s)|: off by at most 2.9 u |q(s)|
+ *   pose   R(q(s)) x is off by twice that, 5.8 u r, besides the 22 u r that support_pair.h counts;
+ *          D(s) by 3.1 u of the largest of the sums of magnitudes that D is made of at both ends,
+ *          besides 4.1 u: 32 u reach covers this too
+ *   N      a matrix is off by 12.1 u (motion.h; Frobenius) and 5.8 u: 18 u L
+ *   n      N m: 18 u + 5.3 u = 24 u L |m|; the products of these: 24 + 24 + 4 = 52 u L_A L_B |e||f|
+ *   x      N_B^T N_A e: 18 + 24 + 5.3 = 48 u L_A L_B |e|; y likewise; x x f: 52 u
+ *   sums   a coefficient of a convolution is a sum of at most 3 products with positive weights, and
+ *          a degree is raised once: at most 8 u for vectors, twice
+ *   dots   with a vertex: 3.1 u, with D: 3.1 u of rounding and 3.1 u of D
+ *
+ * So no coefficient of the three terms is off by more than 75 u C(5, k) L_A L_B |m| (r_A + r_B +
+ * |D|) and the slack of the stored vertices; their sum by 3 u more. TURN_ERROR is 80 u. Underflow:
+ * lengths are above 2^-200 and quaternions in [1, 2) up to components that do not matter: 2^-900.
+ *
+ * A radius R adds R |n|: |n| is at most the coefficients of |q_A|^2 |q_B|^2 |m|, or the lengths of
+ * those of n in the last case. No shared state. */
+#ifndef FMB_TURN_PATH_H
+#define FMB_TURN_PATH_H
+
+#include "motion.h"
+#include "support_round.h"
+
+struct turn_path {
+    struct support_pair pair; /* at the pose last set */
+    double q[2][2][4];        /* [frame][begin, end] */
+    double offset[2][FMB_DIM_MAX];
+    double farthest; /* bounds the length of the offset, and what its error is relative to */
+};
+
+/* Sets the pair at its beginning. The pair points to frames and into itself: not to be copied. */
+void turn_path_set(const struct frame_pair *frames, struct turn_path *out);
+
+/* Sets path->pair to the pose at s, a multiple of 2^-53 in [0, 1]. */
+void turn_path_pose(struct turn_path *path, double s);
+
+/* Returns the verdict at s that doubles prove, or 0. In: usable; toward: a direction to begin with,
+ * or 0. */
+enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward[FMB_DIM_MAX],
+                           struct support_nearest *nearest);
+
+/* A direction: m fixed in frame `of`; or of = 2 and the product of edges e of A and f of B. */
+struct turn_direction {
+    int of;
+    double m[2][FMB_DIM_MAX]; /* m, or e and f; body coordinates */
+};
+
+/* A direction by vertices: the normal of three vertices of frame `of` (in 2D of two); or of = 2,
+ * and the product of two vertices of each frame. */
+struct turn_corners {
+    int of;
+    uint16_t vertex[4];
+};
+
+/* out := the direction, rounded. */
+void turn_direction_of(const struct support_view *view, const struct turn_corners *corners,
+                       struct turn_direction *out);
+
+/* out := R^T n at the present pose. */
+void turn_body_direction(const struct support_view *view, const double n[FMB_DIM_MAX],
+                         double out[FMB_DIM_MAX]);
+
+/* Sets up to two directions near the nearest direction of a look at the present pose. Returns their
+ * number. */
+unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
+                         struct turn_direction out[2]);
+
+/* Returns a lower bound of the distance of the frames in a direction over the interval [lo, hi]: a
+ * positive one proves that they are apart. -INFINITY if none is known. */
+double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
+                     double lo, double hi);
+
+/* Returns whether a direction, or its opposite if sign is -1, might separate the frames, weakly: a
+ * guess. No coefficient is far below 0. */
+bool turn_may_separate(const struct turn_path *path, const struct turn_direction *direction,
+                       double sign, double lo, double hi);
+
+/* Lists vertices with nearly the greatest n . v. In: n, body coordinates. out: [count of vertices]
+ */
+unsigned turn_farthest(const struct support_view *view, const double n[FMB_DIM_MAX], double sign,
+                       uint16_t *out);
+
+#endif
