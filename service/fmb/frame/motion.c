@@ -12,7 +12,7 @@
 static int sign_of_products(const double *x, const double *y, int count)
 {
     double part[32];
-    int parts = 0, sign = 0;
+    int parts = 0;
     for (int i = 0; i < count; i++) {
         const double product = x[i] * y[i];
         const double term[2] = {fma(x[i], y[i], -product), product};
@@ -26,9 +26,9 @@ static int sign_of_products(const double *x, const double *y, int count)
             part[parts++] = sum;
         }
     }
-    for (int j = 0; j < parts; j++)
-        sign = part[j] != 0 ? (part[j] > 0 ? 1 : -1) : sign;
-    return sign;
+    while (parts > 0 && part[parts - 1] == 0)
+        parts--;
+    return parts == 0 ? 0 : part[parts - 1] > 0 ? 1 : -1;
 }
 
 /* Sets the orientations scaled, each by a power of two of its own, with their largest components in
