@@ -12,7 +12,14 @@
 static int sign_of_products(const double *x, const double *y, int count)
 {
     double part[32];
+    double rounded = 0, most = 0;
     int parts = 0;
+    for (int i = 0; i < count; i++) {
+        rounded += x[i] * y[i];
+        most += fabs(x[i] * y[i]);
+    }
+    if (fabs(rounded) > 0x1p-48 * most) /* off by at most 17 u most */
+        return rounded > 0 ? 1 : -1;
     for (int i = 0; i < count; i++) {
         const double product = x[i] * y[i];
         const double term[2] = {fma(x[i], y[i], -product), product};

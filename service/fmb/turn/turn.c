@@ -12,7 +12,8 @@ static const double short_interval = 0x1p-41, least_interval = 0x1p-50;
 enum {
     LOOKS_MAX = 4000, /* of a decision, then it has no verdict */
     LOOKS_BOUNDED = 200,
-    LOOKS_STEP = 64
+    LOOKS_STEP = 64,
+    DIRECTIONS_MAX = 20 /* towards an end of the contact */
 };
 
 void turn_none(struct turn_decision *out)
@@ -207,13 +208,20 @@ static void push(struct turn_decision *decision, double lo, double hi)
         decision->stack[decision->count++] = (struct turn_interval){lo, hi};
 }
 
-/* Replaces all intervals by those on the side that is sought of the known contact. limit: all times
- * before it (TURN_LAST: after it) are known to have none. */
-static void seek_end(struct turn_decision *decision, double limit)
+static double approach_contact(struct turn_decision *decision, double apart);
+
+/* Replaces all intervals by the one on the side that is sought of the known contact. limit: all
+ * times before it (TURN_LAST: after it) are known to have none. approach: in doubles first. */
+static void seek_end(struct turn_decision *decision, double limit, bool approach)
 {
+    const int late = decision->phase == TURN_LAST;
     decision->count = 0;
     decision->stage = TURN_LOOK;
-    if (decision->phase == TURN_LAST)
+    if (approach && decision->path.pair.usable && limit != decision->in[late])
+        limit = approach_contact(decision, limit);
+    if (fabs(decision->in[late] - limit) <= short_interval)
+        decision->out[late] = late ? fmax(decision->out[1], limit) : fmin(decision->out[0], limit);
+    else if (late)
         push(decision, decision->in[1], limit);
     else
         push(decision, limit, decision->in[0]);
@@ -237,13 +245,13 @@ static bool add_contact(struct turn_decision *decision, double s, enum fmb_verdi
         decision->count = 0;
         decision->stage = TURN_LOOK;
         if (first && decision->phase == TURN_FIRST)
-            seek_end(decision, interval.lo);
+            seek_end(decision, interval.lo, true);
         return true;
     }
     if (decision->phase == TURN_FIRST)
-        seek_end(decision, interval.lo);
+        seek_end(decision, interval.lo, false);
     if (decision->phase == TURN_LAST)
-        seek_end(decision, interval.hi);
+        seek_end(decision, interval.hi, false);
     return decision->phase != TURN_VERDICT;
 }
 
@@ -359,6 +367,71 @@ static void look_at_ends(struct turn_decision *decision, struct turn_interval in
     }
 }
 
+/* ---- Ends of the contact ---- */
+
+/* Returns a time near that at which a direction ceases to separate the frames: they are apart along
+ * it at `from`, and not at `to`. The method of false position, with the Illinois variant. */
+static double root_of(struct turn_path *path, const struct turn_direction *direction, double from,
+                      double to)
+{
+    double apart = turn_along(path, direction, from), in = turn_along(path, direction, to);
+    double z = from, last = to;
+    int side = 0;
+    for (int k = 0; k < 30 && apart > 0 && in < 0 && fabs(z - last) > 0x1p-46; k++) {
+        last = z;
+        z = from + (to - from) * (apart / (apart - in));
+        const double value = turn_along(path, direction, z);
+        if (value > 0) {
+            from = z, apart = value;
+            in *= side == 1 ? 0.5 : 1;
+            side = 1;
+        } else {
+            to = z, in = value;
+            apart *= side == -1 ? 0.5 : 1;
+            side = -1;
+        }
+    }
+    return z;
+}
+
+/* Encloses the end of the contact that the phase is about in doubles, as far as it can: moves in[],
+ * and returns the time up to which the frames are apart. apart: such a time. Along the direction of
+ * the last look the frames are apart until a root of its polynomial: little before that, this is
+ * proven; little after it, they meet, or another direction separates them. */
+static double approach_contact(struct turn_decision *decision, double apart)
+{
+    const int late = decision->phase == TURN_LAST;
+    const double onward = late ? -0.5 * short_interval : 0.5 * short_interval;
+    enum fmb_verdict verdict = look(decision, apart);
+    if (verdict > FMB_SEPARATED)
+        decision->in[late] = apart;
+    for (int k = 0; k < DIRECTIONS_MAX && verdict == FMB_SEPARATED; k++) {
+        const double in = decision->in[late];
+        struct turn_direction direction[2];
+        turn_directions(&decision->path, decision->nearest.direction, direction);
+        const double root = root_of(&decision->path, direction, apart, in);
+        const double before = floor((root - onward) * 0x1p50) * 0x1p-50;
+        const double after = before + 2 * onward;
+        if (!((before - apart) * onward > 0 && (in - after) * onward > 0))
+            break;
+        if (!(turn_distance(&decision->path, direction, fmin(apart, before), fmax(apart, before)) >
+              0))
+            break;
+        apart = before;
+        verdict = look(decision, after);
+        if (verdict > FMB_SEPARATED)
+            decision->in[late] = after;
+        if (verdict != FMB_SEPARATED)
+            break;
+        turn_directions(&decision->path, decision->nearest.direction, direction);
+        if (!(turn_distance(&decision->path, direction, fmin(apart, after), fmax(apart, after)) >
+              0))
+            break;
+        apart = after;
+    }
+    return apart;
+}
+
 /* ---- Answers ---- */
 
 /* Returns the time of a fraction, rounded down or up; at most the duration. */
@@ -380,9 +453,7 @@ static void next_phase(struct turn_decision *decision)
     } else if (decision->phase == TURN_FIRST) {
         decision->phase = TURN_LAST;
         decision->toward[0] = decision->toward[1] = decision->toward[2] = 0;
-        if (decision->in[1] < 1 && look(decision, 1) > FMB_SEPARATED)
-            decision->in[1] = 1;
-        seek_end(decision, 1);
+        seek_end(decision, 1, true);
     } else {
         decision->phase = TURN_POINT;
     }

@@ -162,6 +162,24 @@ unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_
     return count[0] == count[1] ? 2 : 1;
 }
 
+double turn_along(struct turn_path *path, const struct turn_direction *direction, double s)
+{
+    const struct support_view *view = path->pair.view;
+    const int of = direction->of;
+    struct support_column column;
+    double n[FMB_DIM_MAX], other[FMB_DIM_MAX];
+    turn_path_pose(path, s);
+    rotation_apply(&view[of % 2].rotation, direction->m[0], of == 2 ? other : n);
+    if (of == 2) {
+        double f[FMB_DIM_MAX];
+        rotation_apply(&view[1].rotation, direction->m[1], f);
+        vec3_cross(other, f, n);
+    }
+    const double length = sqrt(vec3_dot(n, n));
+    const double outward[FMB_DIM_MAX] = {-n[0] / length, -n[1] / length, -n[2] / length};
+    return -support_farthest(&path->pair, outward, &column) - path->pair.radius[1];
+}
+
 /* ---- Polynomials ---- */
 
 /* Of one frame over an interval: coefficients of N(q) and of |q|^2. */

@@ -88,6 +88,9 @@ void turn_body_direction(const struct support_view *view, const double n[FMB_DIM
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
                          struct turn_direction out[2]);
 
+/* Returns the least n . (b - a) / |n| at s, rounded, less the radii; sets the pose. */
+double turn_along(struct turn_path *path, const struct turn_direction *direction, double s);
+
 /* Returns a lower bound of the distance of the frames in a direction over the interval [lo, hi]: a
  * positive one proves that they are apart. -INFINITY if none is known. */
 double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
