@@ -63,7 +63,8 @@ static const char usage[] =
     "  --retries N          with --bus: give a query up, and end, after N + 1\n"
     "                       timeouts (9)\n"
     "  --json               one line of JSON in place of the text\n"
-    "  --junit FILE         also write JUnit XML, for CI systems\n"
+    "  --junit FILE         also write JUnit XML, for CI systems: a case for each\n"
+    "                       label of scenes, and for other queries of each channel\n"
     "  --limit N            list N differences, and only count the others (1000);\n"
     "                       changes of scenes and verdicts come first\n"
     "  --html FILE          write a page that plays the queries, with the "
@@ -156,7 +157,7 @@ static void on_progress(void *user, int64_t bytes, int64_t of)
 
 /* ---- Files and outcome ---- */
 
-static bool write_junit(const struct replay_run *run, const struct tally *tally)
+static bool write_junit(const struct replay_run *run, struct tally *tally)
 {
     struct output *output;
     if (!output_open(&run->options->junit, &output))
@@ -337,10 +338,13 @@ static int run_replay(struct replay_arguments *options)
             .title = options->replay.log[0],
             .sides = {options->replay.golden ? options->replay.golden : "the recording",
                       options->live ? "answered again by the service" : "answered again"}});
+    options->replay.labels = options->junit.path != NULL;
     options->replay.names = body_names_open();
     run.differences = listing_open(options->limit);
     struct tally *tally = allocate((size_t) options->replay.log_count, sizeof *tally);
     const int code = replay(&run, tally);
+    for (int log = 0; log < options->replay.log_count; log++)
+        tally_clear(&tally[log]);
     free(tally);
     page_close(options->replay.page);
     listing_close(run.differences);

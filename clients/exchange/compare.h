@@ -47,6 +47,7 @@ struct difference {
     struct match_place place;
     enum log_kind query_kind;
     int64_t client_id, sequence_number;
+    char label[QUERY_NAME_MAX + 1]; /* of a scene, truncated; "": none */
     enum difference_kind kind;
     bool whole;         /* of the scene as a whole (its status, bodies or pairs), not of a pair */
     const char *detail; /* DIFFERENT_SCENE: what differs, for people; otherwise NULL */

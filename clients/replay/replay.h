@@ -32,6 +32,7 @@ struct replay_options {
     double from, to; /* queries with from <= t < to, log time in seconds since the first event */
     size_t frames;   /* capacity of the cache in this process */
     struct body_names *names;             /* receives the names of bodies; NULL: none */
+    bool labels;                          /* count scenes by their label (tally.h) */
     struct page *page;                    /* receives what was replayed; NULL: none */
     const struct fmb_client_options *bus; /* the service that answers; NULL: this process */
 };

@@ -95,8 +95,12 @@ static bool read_result(struct replay *replay, const struct match_item *result,
 static bool read_compared(struct replay *replay, const struct match_item *query)
 {
     uint32_t size;
-    return replay_read_query(replay, &replay->rereader, query, replay->compared_bytes, &size,
-                             &replay->compared);
+    if (!replay_read_query(replay, &replay->rereader, query, replay->compared_bytes, &size,
+                           &replay->compared))
+        return false;
+    if (query->key.kind == LOG_SCENE_QUERY && replay->compared.scene.label)
+        snprintf(replay->label, sizeof replay->label, "%s", replay->compared.scene.label);
+    return true;
 }
 
 /* Reads the own query of a golden result. */
@@ -131,6 +135,13 @@ static void add_to_page(struct replay *replay, const struct match_item *query,
 
 /* ---- Comparing ---- */
 
+/* The counts of the query's label, which may be "". */
+static struct tally_channel *label_of(struct replay *replay, const struct match_item *query)
+{
+    const bool counted = replay->options->labels && query->key.kind == LOG_SCENE_QUERY;
+    return counted ? tally_label(tally_of(replay, &query->place), replay->label) : &replay->others;
+}
+
 static void on_difference(void *user, const struct difference *difference)
 {
     struct replay *replay = user;
@@ -140,7 +151,9 @@ static void on_difference(void *user, const struct difference *difference)
     located.query_kind = (enum log_kind) query->key.kind;
     located.client_id = query->key.client_id;
     located.sequence_number = query->key.sequence_number;
+    strcpy(located.label, replay->label);
     replay_channel(replay, query)->differences[difference->kind]++;
+    label_of(replay, query)->differences[difference->kind]++;
     if (difference->detail)
         snprintf(replay->note, sizeof replay->note, "%s", difference->detail);
     replay->sink->difference(replay->sink->user, &located);
@@ -150,6 +163,8 @@ static void count(struct replay *replay, const struct match_item *query,
                   enum replay_outcome outcome, int64_t then_ns)
 {
     replay_channel(replay, query)->outcome[outcome]++;
+    label_of(replay, query)->queries++;
+    label_of(replay, query)->outcome[outcome]++;
     if (then_ns > 0 && (outcome == REPLAY_SAME || outcome == REPLAY_DIFFERENT))
         histogram_add(&tally_of(replay, &query->place)->then, then_ns);
 }
@@ -161,13 +176,21 @@ static struct exchange exchange_of(struct replay *replay, const struct logged_re
         .query = &replay->compared, .result = result, .names = replay->options->names};
 }
 
+/* Whether queries are read also where nothing has to be compared. */
+static bool reads_all(const struct replay *replay)
+{
+    return replay->options->page || replay->options->labels;
+}
+
 static void compare_unrecorded(struct replay *replay, const struct match_item *query,
                                const struct new_result *answered)
 {
     struct exchange then = exchange_of(replay, NULL), now = exchange_of(replay, &replay->now);
     const enum replay_outcome outcome = answered->not_held ? REPLAY_NOT_HELD : REPLAY_UNRECORDED;
+    if (reads_all(replay) && !read_compared(replay, query))
+        return;
     count(replay, query, outcome, 0);
-    if (!replay->options->page || !read_compared(replay, query))
+    if (!replay->options->page)
         return;
     read_new(replay, (enum log_kind) query->key.kind, answered);
     add_to_page(replay, query, &then, &now, outcome);
@@ -211,7 +234,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
     const enum log_kind kind = (enum log_kind) query->key.kind;
     const unsigned char *then = replay->result_bytes;
     uint32_t size;
-    replay->note[0] = 0;
+    replay->label[0] = replay->note[0] = 0;
     if (!query->other) {
         compare_unrecorded(replay, query, answered);
         return;
@@ -223,7 +246,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         return;
     const bool same = compare_bytes_same(kind, then, size, answered->bytes, answered->size);
     /* Results of both types end with compute_ns. */
-    if (same && !replay->options->page && !query->other->has_own)
+    if (same && !reads_all(replay) && !query->other->has_own)
         count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
     else
         compare_read(replay, query, answered, size, same);

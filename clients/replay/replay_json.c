@@ -71,6 +71,8 @@ void replay_json_found(struct json_writer *json, const struct difference *differ
     json_string(json, "channel", tally_channel_name[tally_channel_of(difference->query_kind)]);
     json_integer(json, "client_id", difference->client_id);
     json_integer(json, "sequence_number", difference->sequence_number);
+    if (*difference->label)
+        json_string(json, "label", difference->label);
     write_difference(json, names, difference);
     json_end(json, '}');
 }

@@ -2,6 +2,7 @@
 
 #include "number.h"
 
+#include <glib.h>
 #include <inttypes.h>
 #include <string.h>
 
@@ -14,6 +15,7 @@ struct junit {
     const struct replay_options *options;
     int64_t first_utime;
     int log, channel, lines;
+    const char *label; /* of the scenes of the case; "": those without one */
 };
 
 static void write_xml(FILE *out, const char *text)
@@ -25,27 +27,32 @@ static void begin_case(struct junit *junit, const char *name)
 {
     fputs("    <testcase classname=\"", junit->out);
     write_xml(junit->out, junit->options->log[junit->log]);
-    fprintf(junit->out, "\" name=\"%s\">\n", name);
+    fputs("\" name=\"", junit->out);
+    write_xml(junit->out, name);
+    fputs("\">\n", junit->out);
 }
 
 static void write_line(void *user, const struct difference *difference)
 {
     struct junit *junit = user;
     if (difference->place.log != junit->log ||
-        tally_channel_of(difference->query_kind) != junit->channel || junit->lines++ >= LINES_MAX)
+        tally_channel_of(difference->query_kind) != junit->channel ||
+        strcmp(difference->label, junit->label) != 0 || junit->lines++ >= LINES_MAX)
         return;
     replay_line(junit->out, ESCAPE_XML, difference, junit->options->names, NULL,
                 junit->first_utime);
 }
 
-static void write_channel(struct junit *junit, struct listing *list,
+/* A case: scenes with a label, or the queries of a channel without one. */
+static void write_queries(struct junit *junit, struct listing *list, const char *label,
                           const struct tally_channel *channel)
 {
     FILE *out = junit->out;
     int64_t differences = 0;
     for (int kind = 0; kind < DIFFERENT_KINDS; kind++)
         differences += channel->differences[kind];
-    begin_case(junit, tally_channel_name[junit->channel]);
+    junit->label = label;
+    begin_case(junit, *label ? label : tally_channel_name[junit->channel]);
     if (channel->outcome[REPLAY_DIFFERENT] > 0) {
         fprintf(out, "      <failure message=\"%" PRId64 " of ",
                 channel->outcome[REPLAY_DIFFERENT]);
@@ -63,7 +70,7 @@ static void write_channel(struct junit *junit, struct listing *list,
     fputs("</system-out>\n    </testcase>\n", out);
 }
 
-static void write_log(struct junit *junit, struct listing *list, const struct tally *tally)
+static void write_log(struct junit *junit, struct listing *list, struct tally *tally)
 {
     FILE *out = junit->out;
     const struct tally_channel both = tally_both(tally);
@@ -72,15 +79,21 @@ static void write_log(struct junit *junit, struct listing *list, const struct ta
     const bool is_whole = tally->damages == 0 && tally_unreadable(tally) == 0 &&
                           both.contradictions == 0 && both.left_over == 0 && left_out == 0;
     const bool ended_early = bus->used && bus->end != ANSWER_BUS_NO_END;
-    int failures = 0;
-    for (int i = 0; i < TALLY_CHANNELS; i++)
-        failures += tally->channel[i].outcome[REPLAY_DIFFERENT] > 0;
+    int failures = tally->channel[TALLY_PAIRS].outcome[REPLAY_DIFFERENT] > 0;
+    tally_label(tally, ""); /* the case of scenes without a label comes first, and always */
+    GList *labels = g_list_sort(g_hash_table_get_keys(tally->labels), (GCompareFunc) g_strcmp0);
+    for (const GList *at = labels; at; at = at->next)
+        failures += tally_label(tally, at->data)->outcome[REPLAY_DIFFERENT] > 0;
     fputs("  <testsuite name=\"", out);
     write_xml(out, junit->options->log[junit->log]);
     fprintf(out, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\">\n",
-            TALLY_CHANNELS + 1 + (int) bus->used, failures, !is_whole + ended_early);
-    for (junit->channel = 0; junit->channel < TALLY_CHANNELS; junit->channel++)
-        write_channel(junit, list, &tally->channel[junit->channel]);
+            2 + (int) g_list_length(labels) + (int) bus->used, failures, !is_whole + ended_early);
+    junit->channel = TALLY_PAIRS;
+    write_queries(junit, list, "", &tally->channel[TALLY_PAIRS]);
+    junit->channel = TALLY_SCENES;
+    for (const GList *at = labels; at; at = at->next)
+        write_queries(junit, list, at->data, tally_label(tally, at->data));
+    g_list_free(labels);
     begin_case(junit, "the log is whole");
     if (!is_whole) {
         fputs("      <error message=\"", out);
@@ -104,7 +117,7 @@ static void write_log(struct junit *junit, struct listing *list, const struct ta
 }
 
 void replay_junit(FILE *out, const struct replay_options *options, struct listing *list,
-                  const struct tally *tally, int64_t first_utime)
+                  struct tally *tally, int64_t first_utime)
 {
     struct junit junit = {.out = out, .options = options, .first_utime = first_utime};
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"fmb replay\">\n", out);

@@ -49,7 +49,9 @@ struct replay {
     struct logged_query compared;
     struct logged_query golden_query; /* of the golden result, if it has its own */
     struct logged_result then, now;
-    char note[COMPARE_DETAIL_MAX]; /* how the scenes of both differ; "": they do not */
+    struct tally_channel others;    /* queries whose labels are not counted */
+    char label[QUERY_NAME_MAX + 1]; /* of the query, truncated; "": none, or not read */
+    char note[COMPARE_DETAIL_MAX];  /* how the scenes of both differ; "": they do not */
     /* Contain the geometries of compared and golden_query. */
     unsigned char compared_bytes[LOG_DATA_MAX], golden_bytes[LOG_DATA_MAX];
 };

@@ -179,7 +179,10 @@ void replay_line(FILE *out, enum escape form, const struct difference *differenc
         put_text(out, form, log);
         fputs(": ", out);
     }
-    fprintf(out, "event %" PRId64 "  %.6f s  ", difference->place.number,
+    fprintf(out, "event %" PRId64, difference->place.number);
+    fputs(*difference->label ? " (" : "", out);
+    put_text(out, form, difference->label);
+    fprintf(out, "%s  %.6f s  ", *difference->label ? ")" : "",
             ((double) difference->place.utime - (double) first_utime) / 1e6);
     fputs(!difference->whole                         ? "bodies"
           : difference->query_kind == LOG_PAIR_QUERY ? "the pair"

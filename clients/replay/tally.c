@@ -2,6 +2,7 @@
 
 #include "wire.h"
 
+#include <glib.h>
 #include <stddef.h>
 
 const char *const tally_channel_name[TALLY_CHANNELS] = {WIRE_PAIR_QUERY, WIRE_SCENE_QUERY};
@@ -63,6 +64,22 @@ void tally_add(struct tally *to, const struct tally *from)
     add_histogram(&to->now, &from->now);
     if (from->bus.used)
         to->bus = from->bus;
+}
+
+struct tally_channel *tally_label(struct tally *tally, const char *label)
+{
+    if (!tally->labels)
+        tally->labels = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    struct tally_channel *counts = g_hash_table_lookup(tally->labels, label);
+    if (!counts)
+        g_hash_table_insert(tally->labels, g_strdup(label),
+                            counts = g_new0(struct tally_channel, 1));
+    return counts;
+}
+
+void tally_clear(struct tally *tally)
+{
+    g_clear_pointer(&tally->labels, g_hash_table_destroy);
 }
 
 struct tally_channel tally_both(const struct tally *tally)

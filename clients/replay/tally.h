@@ -61,6 +61,9 @@ struct tally {
     /* Only in the tally of the first log, for all logs: */
     struct tally_bus bus;
     int64_t first_utime; /* time of the first event, microseconds; 0: there is none */
+    /* A GHashTable of this log: the label of scenes, truncated as in struct difference, -> struct
+     * tally_channel, their queries, outcomes and differences. NULL: none are counted. */
+    struct _GHashTable *labels;
 };
 
 /* The channel that a query or result is counted in. In: a kind of query or result. */
@@ -68,6 +71,12 @@ int tally_channel_of(enum log_kind kind);
 
 /* Adds from to to. */
 void tally_add(struct tally *to, const struct tally *from);
+
+/* Returns the counts of a label, for the caller to increase. Exits if memory is exhausted. */
+struct tally_channel *tally_label(struct tally *tally, const char *label);
+
+/* Frees the labels. */
+void tally_clear(struct tally *tally);
 
 /* The sums over both channels. */
 struct tally_channel tally_both(const struct tally *tally);

@@ -713,6 +713,32 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [[ $(xpath '//failure/@message') == '2 of 24 queries'* ]]
 }
 
+# Scenes are queries 0, 3, 6 and so on.
+@test "the label of a scene is named where it differs, and is a JUnit case" {
+    edit --label 3 'home <&"> ]]>' --label 6 shelf --label 9 shelf --label 12 $'a\nb' \
+        --flip 3 --flip 9 --flip 15 --drop 6 arm.log
+    run "$FMB" replay spoiled.log
+    ended 1
+    [[ ${lines[0]} == 'event '[0-9]*' (home <&"> ]]>)  '[0-9.]*' s  bodies '*'  verdict: '* ]]
+    [[ ${lines[1]} == 'event '[0-9]*' (shelf)  '[0-9.]*' s  bodies '* ]]
+    [[ ${lines[2]} == 'event '[0-9]*'  '[0-9.]*' s  bodies '* && ${lines[2]} != *\(* ]]
+    replay spoiled.log
+    counts '[.differences[].label] == ["home <&\"> ]]>", "shelf", null]'
+    junit spoiled.log stack.log
+    ended 1
+    [ "$(xpath '//testsuite[1]/@tests')/$(xpath '//testsuite[1]/@failures')" = 6/3 ]
+    [ "$(xpath 'count(//testsuite[1]/testcase)')/$(xpath 'count(//testsuite[1]//failure)')" = 6/3 ]
+    [[ $(xpath '//testcase[starts-with(@name, "home")]/failure') == $'event '*' (home <&"> ]]>)  '*' s  bodies '* ]]
+    [ "$(xpath '//testcase[@name="shelf"]/failure/@message')" = '1 of 2 queries are answered differently: 1 difference' ]
+    [[ $(xpath '//testcase[@name="shelf"]/system-out') == 'queries: 2, same: 0, different: 1, '*'no result: 1' ]]
+    [ "$(xpath '//testcase[@name="shelf"]/failure' | grep -c '^event')" = 1 ]
+    [ "$(xpath 'count(//testcase[starts-with(@name, "a")]/*)')" = 1 ]
+    [[ $(xpath '//testsuite[1]/testcase[@name="FMB_SCENE_QUERY"]/system-out') == 'queries: 20, same: 19, different: 1, '* ]]
+    [[ $(xpath '//testsuite[1]/testcase[@name="FMB_PAIR_QUERY"]/system-out') == 'queries: 48, same: 48, '* ]]
+    # Those of the other log have no label.
+    [ "$(xpath '//testsuite[2]/@tests')" = 3 ]
+}
+
 @test "JUnit: damage is an error" {
     edit --garbage 5 arm.log
     junit spoiled.log

@@ -227,6 +227,7 @@ static void report_others(struct reporting *reporting, const struct tally *tally
 /* limit: of the differences that are listed. */
 static void check_reporting(struct replay_options options, int64_t limit, bool page)
 {
+    options.labels = true;
     struct reporting reporting = {.list = listing_open(limit), .options = &options};
     const struct replay_sink sink = {on_found, on_unreadable, on_damage, on_progress, &reporting};
     struct tally tally = {.events = 0};

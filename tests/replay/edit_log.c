@@ -23,6 +23,7 @@ static const char usage[] =
     "  --busy N, --unknown N  result N says that the service was busy, or held no such body\n"
     "  --refuse N STATUS  result N has this status, and nothing else\n"
     "  --certify N TEXT   the certificate of result N\n"
+    "  --label N TEXT     the label of query N, of a scene\n"
     "  --drop N, --repeat N   result N is not there, or twice\n"
     "  --drop-query N, --repeat-query N  query N is not there, or twice\n"
     "  --client N, --sequence N  client ids or sequence numbers are larger by N\n"
@@ -364,6 +365,25 @@ static void drop_query(char **argument)
     take_out(number(is_query, argument[0]));
 }
 
+/* The label comes after the fingerprint, the time and both ids: its length, and the text, with its
+ * 0. */
+static void label(char **argument)
+{
+    enum { LABEL = 32 };
+    const size_t at = number(is_query, argument[0]), now = strlen(argument[1]) + 1;
+    const unsigned char *data = event[at].data;
+    const size_t then = data[LABEL + 2] << 8 | data[LABEL + 3], size = event[at].size - then + now;
+    if (!ends_with(event[at].channel, WIRE_SCENE_QUERY) || now > UINT8_MAX)
+        give_up("the query is of a pair, or the label is too long");
+    unsigned char *out = room_for(size);
+    memcpy(out, data, LABEL);
+    memcpy(out + LABEL, (unsigned char[4]){0, 0, 0, (unsigned char) now}, 4);
+    memcpy(out + LABEL + 4, argument[1], now);
+    memcpy(out + LABEL + 4 + now, data + LABEL + 4 + then, size - LABEL - 4 - now);
+    event[at].data = out;
+    event[at].size = size;
+}
+
 static void repeat(char **argument)
 {
     const size_t at = number(is_result, argument[0]);
@@ -512,6 +532,7 @@ static const struct edit {
     {"--events", 2, some},
     {"--refuse", 2, refuse},
     {"--repeat-query", 1, repeat_query},
+    {"--label", 2, label},
     {"--client", 1, add_client},
     {"--sequence", 1, add_sequence},
 };
