@@ -189,7 +189,8 @@ $(O)/%.o: %.c $(O)/settings | $(message_headers)
 
 # ---- Objects and archives ----
 
-objects_in = $(patsubst %.c,$(O)/%.o,$(wildcard $(addsuffix /*.c,$1)))
+# Sorted by make, so that the order does not depend on the locale.
+objects_in = $(patsubst %.c,$(O)/%.o,$(sort $(wildcard $(addsuffix /*.c,$1))))
 
 # The filter's kernels: a file of service/fmb/filter for each job and instruction set. Bits of verdicts
 # are not promised: they may use fused operations. The machine answers where no compiler is there:
@@ -429,6 +430,9 @@ fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call 
 # Sets the mode before the text is written, whatever the umask.
 filled = $(INSTALL) -m 644 /dev/null $1 && $2 > $1
 root := $(DESTDIR)$(PREFIX)
+# $(call needs,VARIABLE,FOLDER,FOLDERS): how to set the variable, unless the folders that are searched have this one.
+needs = case ":$3:" in *":$2:"*) ;; *) printf '  export %s="%s$${%s:+:$$%s}"\n' $1 "$2" $1 $1 ;; esac;
+of_system := $(filter /usr/lib% /usr/local/lib%,$(LIBDIR))
 .PHONY: install install-strip uninstall
 install: all
 	$(INSTALL) -d $(foreach d,bin include share/fmb/lcmtypes share/doc/fmb share/man/man1 share/man/man8 \
@@ -440,7 +444,7 @@ install: all
 	$(INSTALL) $(strip_option) -m 644 $(shared_libraries) "$(DESTDIR)$(LIBDIR)"
 	for name in fmb fmb-client fmb-robot; do \
 		ln -sf lib$$name.$(so) "$(DESTDIR)$(LIBDIR)/lib$$name.so" || exit; done
-	$(if $(DESTDIR),,$(if $(filter /usr/lib% /usr/local/lib%,$(LIBDIR)),[ $$(id -u) != 0 ] || ldconfig))
+	$(if $(DESTDIR),,$(if $(of_system),[ $$(id -u) != 0 ] || ldconfig))
 	$(INSTALL) -m 644 service/fmb/fmb.h service/fmb/fmb_batch.h clients/lib/fmb_client.h \
 		clients/robot/fmb_robot.h clients/python/fmb_flat.h "$(root)/include"
 	$(call filled,"$(DESTDIR)$(PYTHONDIR)/fmb.py",sed '/SONAME = /s/\.so"/.$(so)"/' clients/python/fmb.py)
@@ -456,6 +460,14 @@ install: all
 	for name in fmb-config fmb-config-version; do \
 		$(call filled,"$(DESTDIR)$(LIBDIR)/cmake/fmb/$$name.cmake",$(fill_in) clients/lib/$$name.cmake.in) || exit; done
 	$(call filled,"$(root)/lib/systemd/system/fmbd.service",$(subst %,%%,$(fill_in)) service/fmbd.service.in)
+	@$(if $(DESTDIR)$(silent),:,{ $(if $(of_system),[ $$(id -u) = 0 ] || echo '  sudo ldconfig';) \
+		$(call needs,PATH,$(PREFIX)/bin,$$PATH) \
+		$(call needs,LD_LIBRARY_PATH,$(LIBDIR),$$LD_LIBRARY_PATH:$$(PATH=$$PATH:/usr/sbin:/sbin ldconfig -vN 2> /dev/null | \
+			sed -n 's|^\(/[^:]*\):.*|\1|p' | paste -sd:)) \
+		$(call needs,PKG_CONFIG_PATH,$(LIBDIR)/pkgconfig,$$PKG_CONFIG_PATH:$$(pkg-config --variable pc_path pkg-config)) \
+		$(call needs,CMAKE_PREFIX_PATH,$(PREFIX),/usr:/usr/local:$$CMAKE_PREFIX_PATH) \
+		$(call needs,PYTHONPATH,$(PYTHONDIR),$$($(python) -c 'import sys; print(":".join(sys.path))')) } | \
+		sed '1i to find what is installed:')
 
 install-strip: strip_option := -s
 install-strip: install

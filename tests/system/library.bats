@@ -409,6 +409,30 @@ END
     done
 }
 
+@test "make install ends with the settings that a prefix needs, and with no others" {
+    [ -x /usr/bin/python3 ] || skip "needs python3"
+    unset PKG_CONFIG_PATH LD_LIBRARY_PATH
+    prefix="$BATS_TEST_TMPDIR/a & b"
+    install=(env -u MAKEFLAGS -u MAKELEVEL make -o all "${options[@]}" install PREFIX="$prefix")
+    printf '#include <fmb_client.h>\nint main(void) { return !fmb_client_prefix_ok("a"); }\n' > "$BATS_TEST_TMPDIR/small.c"
+    (
+        eval "$("${install[@]}" | tee "$BATS_TEST_TMPDIR/said" | sed '1,/^to find what is installed:$/d')"
+        cd "$BATS_TEST_TMPDIR"
+        [ "$(sed -n '/^to find/,$p' said | wc -l)" = 6 ]
+        [ "$(command -v fmbd)" = "$prefix/bin/fmbd" ]
+        eval "$compiler small.c $(pkg-config --cflags --libs fmb-client) -o small"
+        ./small
+        /usr/bin/python3 -c 'import fmb; fmb.version()'
+        [[ $CMAKE_PREFIX_PATH == "$prefix"* ]]
+        # Nothing is left to set, but the loader would not find another folder.
+        cd "$OLDPWD"
+        ! "${install[@]}" | grep -A 9 '^to find' || false
+        [ "$("${install[@]}" LIBDIR="$prefix/other" | sed '1,/^to find/d' | cut -d = -f 1 | xargs)" = 'export LD_LIBRARY_PATH export PKG_CONFIG_PATH' ]
+    )
+    ! "${install[@]}" DESTDIR="$BATS_TEST_TMPDIR/staged" | grep '^to find' || false
+    [ -z "$("${install[@]}" -s)" ]
+}
+
 @test "a robot is the same in a program whose locale has decimal commas" {
     cd "$BATS_TEST_TMPDIR"
     printf '%s\n' LC_NUMERIC 'decimal_point ","' 'thousands_sep ""' 'grouping -1' 'END LC_NUMERIC' > comma
