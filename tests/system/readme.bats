@@ -69,6 +69,30 @@ prints_what_it_shows() {
     [ "$(grep -c "^.*<use xlink:href='#gpPt0' transform=" "$FMB_BUILD/path.svg")" = 7 ]
 }
 
+@test "the script for CI systems fails if a scene has a contact or a log is answered differently, and reports which" {
+    local build
+    build=$(realpath "$FMB_BUILD")
+    cp -r clients/demo/robot "$BATS_TEST_TMPDIR/ci"
+    mkdir "$BATS_TEST_TMPDIR/ci/logs"
+    cp tests/logs/{arm,stack}.log "$BATS_TEST_TMPDIR/ci/logs"
+    awk '/^```/ { inside = ($0 == "```sh"); next } inside' clients/README.md | sed -n '/^#!/,$p' > "$BATS_TEST_TMPDIR/ci/ci.sh"
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/ci/ci.sh")" -le 10 ]
+    cd "$BATS_TEST_TMPDIR/ci"
+    PATH=$build:$PATH
+    ! sh ci.sh > said 2> /dev/null || false
+    grep -qx 'overlapping in 2 of 9 scenes, first in scene 4 (swing .*): forearm and post; .*' said
+    # The rows before that contact.
+    sed -i 4q path.csv
+    sh ci.sh > said 2> /dev/null
+    [ "$(cat said)" = "no contact in 3 scenes" ]
+    grep -q '</html>' scenes.html
+    "$TOOLS/edit-log" --label 3 home --flip 3 logs/arm.log flipped.log
+    mv flipped.log logs/arm.log
+    ! sh ci.sh > said 2> /dev/null || false
+    [ "$(sed -n '2,$s/  .*//p' said)" = 'logs/arm.log: event 7 (home)' ]
+    grep -A 1 '<testcase .* name="home">' replay.xml | grep -q '<failure'
+}
+
 @test "the commands of the page of robots print what it shows" {
     prints_what_it_shows clients/robot/README.md 3
 }
