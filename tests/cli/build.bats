@@ -192,6 +192,25 @@ make_netns() {
     [ -x "$BATS_TEST_TMPDIR/b/netns" ]
 }
 
+@test "what is linked has the same bytes in every folder, locale and time zone, and for every umask" {
+    # A program of one file, and an object that the linker optimises again.
+    local number=0 folder
+    for folder in short "a longer & path"; do
+        mkdir "$BATS_TEST_TMPDIR/$folder"
+        cp -r Makefile tests service msgs clients "$BATS_TEST_TMPDIR/$folder"
+        (
+            cd "$BATS_TEST_TMPDIR/$folder"
+            umask $((number * 77))
+            TZ=UTC$number LC_ALL=$([ $number = 0 ] && echo C || echo C.UTF-8) CCACHE_DISABLE=1 \
+                env -u MAKEFLAGS -u MAKELEVEL make -s O=o B=b GEN=msgs \
+                --eval=$'b/small.so: o/service/answer/cache.o\n\t$(link)' \
+                --eval='b/small.so: linking = $(filter-out -pie,$(link_whole)) -shared' b/small.so b/netns
+        )
+        number=$((number + 1))
+    done
+    for file in netns small.so; do cmp "$BATS_TEST_TMPDIR"/{short,a*}/b/$file; done
+}
+
 @test "make prints a line a file, with V=1 the commands, and with -s nothing" {
     make_netns
     [ "$output" = "  CC    clients/demo/netns.c"$'\n'"  LD    $BATS_TEST_TMPDIR/b/netns" ]
