@@ -138,12 +138,13 @@ none() {
     [ "$version" ] && grep -q "^## $version\b" .github/CHANGELOG.md
 }
 
-@test "every target of make in backticks exists" {
+@test "every target of make in backticks, and in the workflows, exists" {
     # What make knows; it makes nothing, as there is no such target.
     MAKEFLAGS='' make -npq MODE=debug no-such-target > "$BATS_TEST_TMPDIR/known" 2> /dev/null || true
     {
         quoted 'make .*' | cut -f 2
         sed -n '/^```sh/,/^```$/s/ *#.*//p' "${pages[@]}"
+        sed -n 's/^ *- run: make/make/p' .github/workflows/*.yml
     } | sed -n 's/^make //p' | tr ' ' '\n' | grep -x '[a-z][a-z-]*' | sort -u > "$BATS_TEST_TMPDIR/targets"
     [ "$(wc -l < "$BATS_TEST_TMPDIR/targets")" -gt 5 ]
     sed -n 's/^\([a-z][a-z-]*\):.*/\1/p' "$BATS_TEST_TMPDIR/known" | grep -vxFf - "$BATS_TEST_TMPDIR/targets" | none
