@@ -508,6 +508,166 @@ static void numbers_of_any_size(void **state)
     }
 }
 
+/* ---- Random windows against static poses ----
+ *
+ * With small whole numbers the poses at multiples of 1/32 of the window are exact in doubles, and
+ * the static answers there are those of pairs that do not turn. */
+
+enum { SAMPLES = 32 };
+
+static uint64_t seed_of_draw;
+
+static int draw(int low, int high)
+{
+    seed_of_draw = seed_of_draw * UINT64_C(6364136223846793005) + 1442695040888963407;
+    return low + (int) ((seed_of_draw >> 33) % (unsigned) (high - low + 1));
+}
+
+/* Draws a body of dimension dim. */
+static void draw_body(int dim, double memory[400], struct fmb_body *out)
+{
+    double number[60];
+    const int kind = draw(0, 3), vertices = draw(1, 16);
+    for (int i = 0; i < 60; i++)
+        number[i] = draw(-4, 4);
+    enum fmb_status status;
+    if (kind == 0)
+        status = fmb_body_make(dim, FMB_BOX, (const double[]){fabs(number[0]) + 1, 3, 2},
+                               (size_t) dim, out);
+    else if (kind == 1)
+        status =
+            fmb_body_make_vertices(dim, FMB_TETRAHEDRON, number, (size_t) dim * (dim + 1u), out);
+    else if (kind == 2 && dim == 3)
+        status = fmb_body_make_vertices(3, FMB_FACE, number, 9, out);
+    else
+        status = fmb_body_make_hull(dim, number, (size_t) (dim * vertices), memory, out);
+    assert_int_equal(status, FMB_OK);
+    if (draw(0, 3) == 0)
+        assert_int_equal(fmb_body_inflate(out, 0.25), FMB_OK);
+}
+
+static void draw_placement(const struct fmb_body *body, bool turns, struct fmb_placement *out)
+{
+    const int count = body->dim == 3 ? 4 : 2;
+    do {
+        *out = (struct fmb_placement){.body = body, .orientation_count = count};
+        out->end_count = turns ? body->dim + count : 0;
+        for (int i = 0; i < count; i++) {
+            out->orientation[i] = draw(-3, 3);
+            out->end_orientation[i] = draw(-3, 3);
+        }
+        for (int axis = 0; axis < body->dim; axis++) {
+            out->position[axis] = 0.5 * draw(-7, 7);
+            out->end_position[axis] = 0.5 * draw(-7, 7);
+            out->velocity[axis] = turns ? 0 : 0.25 * draw(-2, 2);
+        }
+    } while (fmb_placement_check(out) != FMB_OK);
+}
+
+/* The pose at sample k of a window of 2 s, exactly. */
+static void set_sample(const struct fmb_placement *placement, int k, struct fmb_placement *out)
+{
+    double dot = 0;
+    *out = *placement;
+    out->end_count = 0;
+    memset(out->velocity, 0, sizeof out->velocity);
+    for (int i = 0; i < placement->orientation_count; i++)
+        dot += placement->orientation[i] * placement->end_orientation[i];
+    for (int i = 0; i < placement->orientation_count && placement->end_count; i++)
+        out->orientation[i] = (SAMPLES - k) * placement->orientation[i] +
+                              (dot < 0 ? -k : k) * placement->end_orientation[i];
+    for (int axis = 0; axis < 3; axis++)
+        out->position[axis] =
+            placement->end_count
+                ? ((SAMPLES - k) * placement->position[axis] + k * placement->end_position[axis]) /
+                      SAMPLES
+                : placement->position[axis] + placement->velocity[axis] * k / 16;
+}
+
+/* No static answer contradicts that of the window. Bodies are at most 20 from the origin. */
+static void expect_no_contradiction(const struct fmb_placement pair[2],
+                                    const struct fmb_answer *answer)
+{
+    for (int k = 0; k <= SAMPLES; k++) {
+        struct fmb_placement pose[2];
+        struct fmb_answer at;
+        for (int f = 0; f < 2; f++)
+            set_sample(&pair[f], k, &pose[f]);
+        assert_int_equal(fmb_decide(fmb_method_default(), &pose[0], &pose[1], 0,
+                                    FMB_WANT_BOX | FMB_WANT_GAP, &at),
+                         FMB_OK);
+        assert_true(at.verdict <= answer->verdict);
+        assert_true(at.gap.bounds[1] >= answer->gap.bounds[0] - 2e-11);
+        if (at.verdict == FMB_SEPARATED)
+            continue;
+        assert_true(answer->contact[0] <= k / 16. && answer->contact[1] >= k / 16.);
+        for (int axis = 0; axis < 3; axis++)
+            assert_true(answer->box[0][axis] <= at.box[0][axis] + 2e-11 &&
+                        answer->box[1][axis] >= at.box[1][axis] - 2e-11);
+    }
+}
+
+/* Within 3e-12 s before the first contact and after the last one the bodies are apart, and the gap
+ * is that at its time. */
+static void expect_tight(const struct fmb_placement pair[2], const struct fmb_answer *answer)
+{
+    struct fmb_placement pose[2];
+    struct fmb_answer at;
+    assert_true(answer->gap.bounds[0] <= answer->gap.bounds[1] &&
+                answer->gap.bounds[1] - answer->gap.bounds[0] <= 2e-11);
+    for (int end = 0; end < 2 && answer->has_contact; end++) {
+        const double time = answer->contact[end] + (end ? 3e-12 : -3e-12);
+        if (time <= 0 || time >= 2)
+            continue;
+        for (int f = 0; f < 2; f++)
+            fmb_pose_at(&pair[f], 2, time, &pose[f]);
+        assert_int_equal(fmb_decide(fmb_method_default(), &pose[0], &pose[1], 0, FMB_WANT_GAP, &at),
+                         FMB_OK);
+        assert_true(at.gap.bounds[1] > -1e-13);
+    }
+    if (answer->verdict != FMB_SEPARATED)
+        return;
+    for (int f = 0; f < 2; f++)
+        fmb_pose_at(&pair[f], 2, answer->gap.time, &pose[f]);
+    assert_int_equal(fmb_decide(fmb_method_default(), &pose[0], &pose[1], 0, FMB_WANT_GAP, &at),
+                     FMB_OK);
+    assert_true(answer->gap.has_witness);
+    assert_float_equal(at.gap.bounds[0], answer->gap.bounds[0], 2e-11);
+}
+
+static void random_windows_agree_with_static_poses(void **state)
+{
+    const unsigned want = FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT;
+    int counts[4] = {0};
+    seed_of_draw = 11;
+    for (int k = 0; k < 600; k++) {
+        struct fmb_body body[2];
+        struct fmb_placement pair[2];
+        double memory[2][400];
+        struct fmb_answer answer, swapped;
+        const int dim = draw(2, 3), both = draw(0, 1);
+        for (int f = 0; f < 2; f++) {
+            draw_body(dim, memory[f], &body[f]);
+            draw_placement(&body[f], both || f, &pair[f]);
+        }
+        const enum fmb_status status =
+            fmb_decide(fmb_method_default(), &pair[0], &pair[1], 2, want, &answer);
+        assert_int_equal(fmb_decide(fmb_method_default(), &pair[1], &pair[0], 2, want, &swapped),
+                         status);
+        assert_true(answer.verdict == swapped.verdict &&
+                    memcmp(answer.contact, swapped.contact, sizeof answer.contact) == 0 &&
+                    memcmp(answer.box, swapped.box, sizeof answer.box) == 0 &&
+                    memcmp(answer.point, swapped.point, sizeof answer.point) == 0 &&
+                    memcmp(answer.gap.bounds, swapped.gap.bounds, sizeof answer.gap.bounds) == 0);
+        counts[answer.verdict]++;
+        if (status != FMB_OK)
+            continue;
+        expect_no_contradiction(pair, &answer);
+        expect_tight(pair, &answer);
+    }
+    assert_true(counts[0] <= 12 && counts[FMB_SEPARATED] > 100 && counts[FMB_OVERLAPPING] > 100);
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -525,6 +685,7 @@ int main(void)
         cmocka_unit_test(windows_join),
         cmocka_unit_test(straight_motion_as_an_end),
         cmocka_unit_test(numbers_of_any_size),
+        cmocka_unit_test(random_windows_agree_with_static_poses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -405,7 +405,8 @@ static bool begin_with_end(const struct frame_pair *pair, unsigned want, double 
         out->stage = CERTIFIED_TURNING;
         if (!quick)
             out->turning = memory_allocate(sizeof *out->turning);
-        const bool done = turn_begin(pair, want, quick, quick ? &bounded : out->turning, answer);
+        const bool done =
+            turn_begin(pair, want, farthest, quick, quick ? &bounded : out->turning, answer);
         if (done)
             end_turning(out);
         return done;

@@ -175,21 +175,18 @@ void fmb_pose_at(const struct fmb_placement *placement, double duration, double 
  * 12.2 u (L / w)^2 S; the sum of both by 1.1 u (L / w) S more. 24 u (L / w)^2 S covers this, and
  * the rounding of the bound, if L / w < 2^20. Otherwise, and wherever it is tighter, the box is
  * that of a ball of the reach about each position. */
-#define MOTION_BOX_ERROR (24 * 0x1p-53)
+#define MOTION_BOX_ERROR (40 * 0x1p-53)
 
-struct aabb motion_box(const struct fmb_placement *placement, const double box[2][FMB_DIM_MAX],
-                       double reach)
+void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_MAX], int dim,
+                        const double box[2][FMB_DIM_MAX], double reach, double low[FMB_DIM_MAX],
+                        double high[FMB_DIM_MAX])
 {
-    const int dim = placement->body->dim;
-    double q[2][4], m[FMB_DIM_MAX] = {0}, h[FMB_DIM_MAX] = {0}, sum = 0, norm[3];
-    double low[FMB_DIM_MAX] = {INFINITY, INFINITY, INFINITY};
-    double high[FMB_DIM_MAX] = {-INFINITY, -INFINITY, -INFINITY};
-    struct aabb out = {{{0}}};
-    motion_quaternions(placement, q[0], q[1]);
+    double m[FMB_DIM_MAX] = {0}, h[FMB_DIM_MAX] = {0}, sum = 0, norm[3];
     for (int axis = 0; axis < dim; axis++) {
         m[axis] = 0.5 * box[0][axis] + 0.5 * box[1][axis];
         h[axis] = fmax(box[1][axis] - m[axis], m[axis] - box[0][axis]) * (1 + 0x1p-51);
         sum += fabs(m[axis]) + h[axis];
+        low[axis] = INFINITY, high[axis] = -INFINITY;
     }
     for (int k = 0; k < 3; k++) {
         const double *x = q[k == 2], *y = q[k > 0];
@@ -212,13 +209,27 @@ struct aabb motion_box(const struct fmb_placement *placement, const double box[2
         }
     }
     for (int axis = 0; axis < dim; axis++) {
-        const double x = placement->position[axis], y = placement->end_position[axis];
+        const double x = position[0][axis], y = position[1][axis];
         const double below = fmin(x, y) + (low[axis] > -reach ? low[axis] : -reach);
         const double above = fmax(x, y) + (high[axis] < reach ? high[axis] : reach);
-        const double down = below - (fabs(below) * 0x1p-52 + 0x1p-1060);
-        const double up = -above - (fabs(above) * 0x1p-52 + 0x1p-1060);
-        out.end[axis] =
-            (lanes){down > -INFINITY ? down : -INFINITY, up > -INFINITY ? up : -INFINITY};
+        low[axis] = below - (fabs(below) * 0x1p-52 + 0x1p-1060);
+        high[axis] = above + (fabs(above) * 0x1p-52 + 0x1p-1060);
+        low[axis] = low[axis] > -INFINITY ? low[axis] : -INFINITY;
+        high[axis] = high[axis] < INFINITY ? high[axis] : INFINITY;
     }
+}
+
+struct aabb motion_box(const struct fmb_placement *placement, const double box[2][FMB_DIM_MAX],
+                       double reach)
+{
+    double q[2][4], low[FMB_DIM_MAX], high[FMB_DIM_MAX], position[2][FMB_DIM_MAX];
+    struct aabb out = {{{0}}};
+    motion_quaternions(placement, q[0], q[1]);
+    memcpy(position[0], placement->position, sizeof position[0]);
+    memcpy(position[1], placement->end_position, sizeof position[1]);
+    motion_box_between((const double(*)[4]) q, (const double(*)[FMB_DIM_MAX]) position,
+                       placement->body->dim, box, reach, low, high);
+    for (int axis = 0; axis < placement->body->dim; axis++)
+        out.end[axis] = (lanes){low[axis], -high[axis]};
     return out;
 }

@@ -28,6 +28,14 @@ enum fmb_status motion_check(const struct fmb_placement *placement);
  * is rounded. Without an orientation both are (1, 0, 0, 0). */
 void motion_quaternions(const struct fmb_placement *placement, double q0[4], double q1[4]);
 
+/* Sets the ends of a box that contains a frame or a body while its orientation is between q[0] and
+ * q[1], each off by at most 3 u of its length, and its position between two.
+ *
+ * In: box, reach  as of motion_box() */
+void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_MAX], int dim,
+                        const double box[2][FMB_DIM_MAX], double reach, double low[FMB_DIM_MAX],
+                        double high[FMB_DIM_MAX]);
+
 /* out := N(q, r), [row][column]. Each entry is a sum of four products whose magnitudes sum to at
  * most |q| |r|, by Cauchy and Schwarz. It is off by at most 4.01 u |q| |r|. */
 INLINE void motion_polar(const double q[4], const double r[4], double out[FMB_DIM_MAX][FMB_DIM_MAX])

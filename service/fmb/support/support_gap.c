@@ -229,8 +229,10 @@ static bool set_gap(const struct support_pair *pair, struct support_gap *out)
         return false;
     for (int f = 0; f < 2; f++)
         for (int axis = 0; axis < pair->dim; axis++) {
-            out->position[f][axis] = frames[f].placement->position[axis];
-            out->displacement[f][axis] = frames[f].placement->velocity[axis] * out->duration;
+            const struct fmb_placement *placement = frames[f].placement;
+            const bool posed = pair->posed;
+            out->position[f][axis] = posed ? pair->position[f][axis] : placement->position[axis];
+            out->displacement[f][axis] = posed ? 0 : placement->velocity[axis] * out->duration;
         }
     set_bounds(out, fmax(least_of(out, 0), least_of(out, 1)));
     return out->far <= 0x1p900;
@@ -427,6 +429,8 @@ enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapp
     begun->farthest = farthest;
     begun->flat = false;
     support_pair_set(&begun->frames, &begun->pair);
+    if (pair->posed)
+        support_pair_pose(pair, &begun->pair);
     if (late) {
         begun->stage = GAP_DEPTH;
         set_gap(&begun->pair, &begun->gap);

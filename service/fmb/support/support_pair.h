@@ -74,12 +74,16 @@ struct support_pair {
     /* The pose of a pair that turns: that at the fraction at of the window, a multiple of 2^-53. */
     bool posed;
     double at;
-    bool rounded;     /* a frame has a radius */
-    double radius[2]; /* lower and upper bound of the sum of both radii */
+    double position[2][FMB_DIM_MAX]; /* of both bodies there, rounded three times; else not set */
+    bool rounded;                    /* a frame has a radius */
+    double radius[2];                /* lower and upper bound of the sum of both radii */
 };
 
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */
 void support_pair_set(const struct frame_pair *frames, struct support_pair *out);
+
+/* Gives a pair that support_pair_set() has set the pose of another pair of the same frames. */
+void support_pair_pose(const struct support_pair *posed, struct support_pair *out);
 
 /* A point of D by number: vertex of A, vertex of B, and the end of the window, 0 or 1. The end is 0
  * if the pair does not drift. */

@@ -1,5 +1,6 @@
 #include "turn.h"
 
+#include "aabb.h"
 #include "programs.h"
 
 #include <math.h>
@@ -29,6 +30,8 @@ void turn_end(struct turn_decision *decision)
         programs_end(decision->programs, NULL);
     if (decision->has_exact)
         turn_exact_end(&decision->exact);
+    if (decision->phase == TURN_GAP)
+        turn_gap_end(&decision->gap);
     turn_none(decision);
 }
 
@@ -131,7 +134,7 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
     if (out->count > NEAR_VERTICES) {
         double n[FMB_DIM_MAX];
         turn_body_direction(view, decision->toward, n);
-        out->count = turn_farthest(view, n, f ? -1 : 1, out->vertex);
+        out->count = turn_farthest(view, n, f ? -1 : 1, 0, out->vertex);
         /* Far apart in the list: neighbours may be nearly on one line. */
         for (unsigned i = 0; out->count > NEAR_VERTICES && i < NEAR_VERTICES; i++)
             out->vertex[i] = out->vertex[i * out->count / NEAR_VERTICES];
@@ -292,7 +295,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         return;
     if (verdict == FMB_SEPARATED && sure) {
         const unsigned count =
-            turn_directions(&decision->path, decision->nearest.direction, direction);
+            turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         for (unsigned k = 0; k < count; k++)
             if (turn_distance(&decision->path, &direction[k], interval.lo, interval.hi) > 0) {
                 pop(decision);
@@ -408,7 +411,7 @@ static double approach_contact(struct turn_decision *decision, double apart)
     for (int k = 0; k < DIRECTIONS_MAX && verdict == FMB_SEPARATED; k++) {
         const double in = decision->in[late];
         struct turn_direction direction[2];
-        turn_directions(&decision->path, decision->nearest.direction, direction);
+        turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         const double root = root_of(&decision->path, direction, apart, in);
         const double before = floor((root - onward) * 0x1p50) * 0x1p-50;
         const double after = before + 2 * onward;
@@ -423,7 +426,7 @@ static double approach_contact(struct turn_decision *decision, double apart)
             decision->in[late] = after;
         if (verdict != FMB_SEPARATED)
             break;
-        turn_directions(&decision->path, decision->nearest.direction, direction);
+        turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         if (!(turn_distance(&decision->path, direction, fmin(apart, after), fmax(apart, after)) >
               0))
             break;
@@ -445,43 +448,169 @@ static double seconds(double s, double duration, bool up)
     return fmin(nextafter(time, up ? INFINITY : 0), duration);
 }
 
-/* Begins the next phase, after the intervals of one are done. */
-static void next_phase(struct turn_decision *decision)
+/* The pieces of a contact whose boxes are united. */
+enum { BOX_PIECES = 16 };
+
+/* Adds the intersection of the boxes of both frames over an interval to a box. Positions pass three
+ * roundings each, and the end of one without an end of its own two more. */
+static void add_box(const struct turn_path *path, double lo, double hi, double box[2][FMB_DIM_MAX])
 {
-    if (decision->phase == TURN_VERDICT) {
-        decision->phase = TURN_POINT;
-    } else if (decision->phase == TURN_FIRST) {
+    const double at[2] = {lo, hi};
+    double low[2][FMB_DIM_MAX], high[2][FMB_DIM_MAX];
+    for (int f = 0; f < 2; f++) {
+        const struct fmb_frame *frame = path->pair.view[f].placed.frame;
+        double q[2][4], position[2][FMB_DIM_MAX], own[2][FMB_DIM_MAX], off[FMB_DIM_MAX];
+        for (int end = 0; end < 2; end++) {
+            const double s = at[end];
+            for (int i = 0; i < 4; i++)
+                q[end][i] = (1 - s) * path->q[f][0][i] + s * path->q[f][1][i];
+            for (int axis = 0; axis < path->pair.dim; axis++) {
+                const double *p = &path->position[f][0][axis], *r = &path->position[f][1][axis];
+                position[end][axis] = (1 - s) * *p + s * *r;
+                off[axis] = lo == 0 && hi == 1 ? 0x1p-51 * fabs(*p - *r) + 0x1p-51 * fabs(*p)
+                                               : 0x1p-50 * (fabs(*p) + fabs(*r));
+            }
+        }
+        frame_box(frame, own);
+        motion_box_between((const double(*)[4]) q, (const double(*)[FMB_DIM_MAX]) position,
+                           path->pair.dim, (const double(*)[FMB_DIM_MAX]) own, frame->reach, low[f],
+                           high[f]);
+        for (int axis = 0; axis < path->pair.dim; axis++)
+            low[f][axis] -= off[axis], high[f][axis] += off[axis];
+    }
+    for (int axis = 0; axis < path->pair.dim; axis++)
+        if (fmax(low[0][axis], low[1][axis]) > fmin(high[0][axis], high[1][axis]))
+            return;
+    for (int axis = 0; axis < path->pair.dim; axis++) {
+        box[0][axis] = fmin(box[0][axis], fmax(low[0][axis], low[1][axis]) + 0.0);
+        box[1][axis] = fmax(box[1][axis], fmin(high[0][axis], high[1][axis]) + 0.0);
+    }
+}
+
+/* Sets the box of a pair in contact over [first, last]. */
+static void set_box(const struct turn_path *path, double first, double last,
+                    double box[2][FMB_DIM_MAX])
+{
+    memset(box, 0, 2 * sizeof *box);
+    for (int axis = 0; axis < path->pair.dim; axis++)
+        box[0][axis] = INFINITY, box[1][axis] = -INFINITY;
+    for (int k = 0; k < BOX_PIECES; k++) {
+        const double lo = first + (last - first) * k / BOX_PIECES;
+        const double hi = k + 1 < BOX_PIECES ? first + (last - first) * (k + 1) / BOX_PIECES : last;
+        add_box(path, lo, hi, box);
+    }
+}
+
+/* Sets the gap of a pair that touches at s: 0, with the direction that proves the most of those of
+ * the last looks and those by vertices. */
+static void set_touching_gap(struct turn_decision *decision, double s, struct fmb_gap *out)
+{
+    struct turn_path *path = &decision->path;
+    struct turn_direction direction[3];
+    double most = -INFINITY;
+    memset(out, 0, sizeof *out);
+    out->direction[0] = 1;
+    if (!path->pair.usable)
+        return;
+    look(decision, s);
+    unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
+    if (vec3_dot(decision->toward, decision->toward) > 0)
+        count += turn_directions(path, decision->toward, 0, &direction[1]) > 0;
+    begin_corners(decision, (struct turn_interval){s, s});
+    for (unsigned k = 0; k < count + decision->corner_count; k++) {
+        double n[FMB_DIM_MAX];
+        if (k >= count)
+            turn_direction_of(path->pair.view, &decision->corners[k - count], &direction[0]);
+        for (int axis = 0; axis < FMB_DIM_MAX && k >= count; axis++)
+            direction[0].m[0][axis] *= decision->sign[k - count];
+        const struct turn_direction *of = &direction[k < count ? k : 0];
+        const double value = turn_along(path, of, s);
+        if (!(value > most))
+            continue;
+        most = value;
+        turn_normal(path, of, n);
+        const double length = sqrt(vec3_dot(n, n)) * (decision->swapped ? -1 : 1);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            out->direction[axis] = n[axis] / length + 0.0;
+    }
+}
+
+/* Sets what follows from the intervals. Returns whether there is a verdict. */
+static bool set_answer(struct turn_decision *decision, struct fmb_answer *answer)
+{
+    const double duration = decision->frames.duration;
+    const bool meets = decision->in[0] <= decision->in[1];
+    const bool ends = decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX);
+    if (decision->undecided && (!decision->overlaps || ends))
+        return false;
+    answer->verdict = decision->overlaps ? FMB_OVERLAPPING : meets ? FMB_TOUCHING : FMB_SEPARATED;
+    if (!meets)
+        return true;
+    const double first = fmin(decision->in[0], decision->out[0]);
+    const double last = fmax(decision->in[1], decision->out[1]);
+    answer->has_contact = decision->want & FMB_WANT_TIMES;
+    answer->has_box = decision->want & FMB_WANT_BOX;
+    if (answer->has_contact) {
+        answer->contact[0] = seconds(first, duration, false);
+        answer->contact[1] = seconds(last, duration, true);
+    }
+    if (answer->has_box)
+        set_box(&decision->path, first, last, answer->box);
+    return true;
+}
+
+/* Begins the next phase, after the intervals of one are done. */
+static void next_phase(struct turn_decision *decision, struct fmb_answer *answer)
+{
+    if (decision->phase == TURN_FIRST) {
         decision->phase = TURN_LAST;
         decision->toward[0] = decision->toward[1] = decision->toward[2] = 0;
         seek_end(decision, 1, true);
+        return;
+    }
+    const bool meets = decision->in[0] <= decision->in[1];
+    const bool more = decision->want & FMB_WANT_GAP || (meets && decision->want & FMB_WANT_POINT);
+    if (!set_answer(decision, answer)) {
+        turn_end(decision);
+    } else if (more && decision->bounded) {
+        decision->exhausted = true;
+    } else if (decision->want & FMB_WANT_GAP && answer->verdict == FMB_TOUCHING) {
+        answer->has_gap = true;
+        set_touching_gap(decision, decision->in[0], &answer->gap);
+        decision->phase = TURN_POINT;
+    } else if (decision->want & FMB_WANT_GAP) {
+        turn_gap_begin(&decision->path, decision->swapped, !meets, decision->farthest,
+                       &decision->gap);
+        decision->phase = TURN_GAP;
     } else {
         decision->phase = TURN_POINT;
     }
 }
 
-/* Sets the answer. Returns whether it is complete; else the programs compute the point. */
-static bool finish(struct turn_decision *decision, struct fmb_answer *answer)
+static void step_gap(struct turn_decision *decision, struct fmb_answer *answer)
 {
-    const double duration = decision->frames.duration;
-    const bool meets = decision->in[0] <= decision->in[1];
-    const bool ends = decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX);
-    if (decision->undecided && (!decision->overlaps || ends)) {
+    bool failed = !decision->path.pair.usable;
+    enum gap_outcome outcome = GAP_KNOWN;
+    if (!failed)
+        outcome = turn_gap_step(&decision->gap, &failed, &answer->gap);
+    if (failed) {
+        memset(answer, 0, sizeof *answer);
         turn_end(decision);
-        return true;
+    } else if (outcome != GAP_UNSURE) {
+        answer->has_gap = true;
+        if (outcome == GAP_FAR)
+            answer->gap = gap_none();
+        decision->phase = TURN_POINT;
     }
-    answer->verdict = decision->overlaps ? FMB_OVERLAPPING : meets ? FMB_TOUCHING : FMB_SEPARATED;
-    if (meets && decision->want & FMB_WANT_TIMES) {
-        answer->has_contact = true;
-        answer->contact[0] = seconds(fmin(decision->in[0], decision->out[0]), duration, false);
-        answer->contact[1] = seconds(fmax(decision->in[1], decision->out[1]), duration, true);
-    }
-    if (meets && decision->want & FMB_WANT_POINT && !decision->bounded) {
-        answer->has_point = true;
+}
+
+/* Begins the programs that compute the point, if it is wanted. */
+static void begin_point(struct turn_decision *decision)
+{
+    if (decision->in[0] <= decision->in[1] && decision->want & FMB_WANT_POINT)
         begin_programs(decision, decision->overlaps ? decision->overlap : decision->in[0], true);
-        return false;
-    }
-    turn_end(decision);
-    return true;
+    else
+        turn_end(decision);
 }
 
 static bool take_programs(struct turn_decision *decision, struct fmb_answer *answer)
@@ -489,6 +618,7 @@ static bool take_programs(struct turn_decision *decision, struct fmb_answer *ans
     struct programs *programs = decision->programs;
     const double at = decision->path.pair.at;
     if (decision->phase == TURN_POINT) {
+        answer->has_point = true;
         programs_nearest_point(programs, answer->point);
         answer->point[0] = seconds(at, decision->frames.duration, false);
         turn_end(decision);
@@ -500,42 +630,53 @@ static bool take_programs(struct turn_decision *decision, struct fmb_answer *ans
     return false;
 }
 
+/* Performs the next piece of work. Returns whether it may have been long. */
+static bool work_once(struct turn_decision *decision, struct fmb_answer *answer)
+{
+    if (decision->phase == TURN_GAP) {
+        step_gap(decision, answer);
+        return true;
+    }
+    if (decision->phase == TURN_POINT) {
+        begin_point(decision);
+        return true;
+    }
+    if (decision->looks > LOOKS_MAX) {
+        decision->undecided = true;
+        decision->count = 0;
+    }
+    if (decision->count == 0) {
+        next_phase(decision, answer);
+        return false;
+    }
+    const struct turn_interval interval = decision->stack[decision->count - 1];
+    const bool exact = decision->stage == TURN_CORNER;
+    if (decision->stage == TURN_LOOK)
+        look_at(decision, interval);
+    else if (exact)
+        try_corner(decision, interval);
+    else
+        look_at_ends(decision, interval);
+    return exact;
+}
+
 bool turn_step(struct turn_decision *decision, struct fmb_answer *answer)
 {
     const unsigned limit = decision->bounded ? LOOKS_BOUNDED : decision->looks + LOOKS_STEP;
     if (decision->programs)
         return programs_step(decision->programs) && take_programs(decision, answer);
-    while (decision->looks < limit && !decision->exhausted) {
-        if (decision->phase == TURN_POINT)
-            return finish(decision, answer);
-        if (decision->looks > LOOKS_MAX) {
-            decision->undecided = true;
-            decision->count = 0;
-        }
-        if (decision->count == 0) {
-            next_phase(decision);
-            continue;
-        }
-        const struct turn_interval interval = decision->stack[decision->count - 1];
-        if (decision->stage == TURN_LOOK) {
-            look_at(decision, interval);
-        } else if (decision->stage == TURN_CORNER) {
-            try_corner(decision, interval);
-            return false;
-        } else {
-            look_at_ends(decision, interval);
-        }
-        if (decision->programs)
-            return false;
-    }
-    return false;
+    while (decision->looks < limit && !decision->exhausted && decision->phase != TURN_COMPLETE)
+        if (work_once(decision, answer) || decision->programs)
+            break;
+    return decision->phase == TURN_COMPLETE;
 }
 
-bool turn_begin(const struct frame_pair *frames, unsigned want, bool bounded,
+bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
                 struct turn_decision *out, struct fmb_answer *answer)
 {
     out->swapped = support_order(frames, &out->frames);
     out->want = want;
+    out->farthest = farthest;
     out->bounded = bounded;
     out->overlaps = out->undecided = out->exhausted = out->has_exact = out->sure = false;
     out->phase = TURN_VERDICT;

@@ -20,12 +20,16 @@
  * The contact is enclosed from both sides: on each, the frames are apart up to a time at most 2^-41
  * from one at which they meet.
  *
+ * Box: the union, over pieces of the contact, of the intersections of the boxes of both frames.
+ * Gap: turn_gap.h.
+ *
  * Steps: a search in doubles takes microseconds, one exact direction of a small pair tens of them,
  * a step of the programs less than a millisecond. No shared state. */
 #ifndef FMB_TURN_H
 #define FMB_TURN_H
 
 #include "turn_exact.h"
+#include "turn_gap.h"
 
 struct programs;
 
@@ -40,7 +44,7 @@ struct turn_decision {
     struct frame_pair frames; /* in the order of support_order() */
     unsigned want;
     bool swapped, bounded, overlaps, undecided, exhausted;
-    enum { TURN_VERDICT, TURN_FIRST, TURN_LAST, TURN_POINT, TURN_COMPLETE } phase;
+    enum { TURN_VERDICT, TURN_FIRST, TURN_LAST, TURN_GAP, TURN_POINT, TURN_COMPLETE } phase;
     enum { TURN_LOOK, TURN_CORNER, TURN_ENDS } stage;
     struct turn_path path;
     struct support_nearest nearest; /* of the last look */
@@ -61,6 +65,8 @@ struct turn_decision {
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
     signed char sign[TURN_CORNERS];
+    struct turn_gap gap;
+    double farthest;
     unsigned corner, corner_count;
     enum turn_outcome outcome; /* the strongest of the corners tried */
 };
@@ -68,11 +74,12 @@ struct turn_decision {
 /* Sets a decision that is complete. */
 void turn_none(struct turn_decision *out);
 
-/* Begins the decision of a checked pair. bounded: only what takes tens of microseconds, without
+/* Begins the decision of a checked pair. farthest: a gap that is surely greater has bounds of NAN.
+ * bounded: only what takes tens of microseconds, without
  * allocation. Returns whether it is complete, with *answer set: without a verdict if it cannot be
  * decided. If not, a bounded decision has ended; for any other, call turn_step() until it returns
  * true. In: *answer is all 0. */
-bool turn_begin(const struct frame_pair *frames, unsigned want, bool bounded,
+bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
                 struct turn_decision *out, struct fmb_answer *answer);
 
 /* Performs a step of less than a millisecond. Returns whether the decision is complete, with

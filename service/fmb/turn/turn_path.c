@@ -15,8 +15,17 @@ void turn_path_set(const struct frame_pair *frames, struct turn_path *out)
 {
     const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
     struct support_pair *pair = &out->pair;
+    const struct fmb_placement *const placed[2] = {a, b};
     double path[FMB_DIM_MAX] = {0}, late[FMB_DIM_MAX] = {0};
     support_pair_set(frames, pair);
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < pair->dim; axis++) {
+            const double p = placed[f]->position[axis];
+            out->position[f][0][axis] = p;
+            out->position[f][1][axis] = placed[f]->end_count
+                                            ? placed[f]->end_position[axis]
+                                            : p + placed[f]->velocity[axis] * frames->duration;
+        }
     motion_quaternions(a, out->q[0][0], out->q[0][1]);
     motion_quaternions(b, out->q[1][0], out->q[1][1]);
     for (int axis = 0; axis < pair->dim; axis++) {
@@ -54,6 +63,9 @@ void turn_path_pose(struct turn_path *path, double s)
         pair->offset[axis] = (1 - s) * path->offset[0][axis] + s * path->offset[1][axis];
     for (int f = 0; f < 2; f++) {
         struct fmb_placement turned = {.orientation_count = 4};
+        for (int axis = 0; axis < pair->dim; axis++)
+            pair->position[f][axis] =
+                (1 - s) * path->position[f][0][axis] + s * path->position[f][1][axis];
         if (!placed[f]->end_count || !placed[f]->orientation_count)
             continue;
         orientation_at((const double(*)[4]) path->q[f], s, turned.orientation);
@@ -88,12 +100,13 @@ void turn_body_direction(const struct support_view *view, const double n[FMB_DIM
 }
 
 unsigned turn_farthest(const struct support_view *view, const double n[FMB_DIM_MAX], double sign,
-                       uint16_t *out)
+                       double slack, uint16_t *out)
 {
     const double along[FMB_DIM_MAX] = {sign * n[0], sign * n[1], sign * n[2]};
     const double most = support_max(&view->vertices, along).value;
     return support_list(&view->vertices, along,
-                        most - (0x1p-30 * view->reach + 2 * view->slack) * vec3_sum(n), out);
+                        most - ((0x1p-30 + slack) * view->reach + 2 * view->slack) * vec3_sum(n),
+                        out);
 }
 
 static void get_edge(const struct support_view *view, const uint16_t vertex[2],
@@ -132,7 +145,7 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
  * there. Two edges that are not parallel: their product. Two parallel edges: either frame may do.
  */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
-                         struct turn_direction out[2])
+                         double slack, struct turn_direction out[2])
 {
     const struct support_view *view = path->pair.view;
     uint16_t list[2][FMB_HULL_VERTICES_MAX];
@@ -140,7 +153,7 @@ unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_
     for (int f = 0; f < 2; f++) {
         out[f].of = f;
         turn_body_direction(&view[f], nearest, out[f].m[0]);
-        count[f] = turn_farthest(&view[f], out[f].m[0], f ? -1 : 1, list[f]);
+        count[f] = turn_farthest(&view[f], out[f].m[0], f ? -1 : 1, slack, list[f]);
     }
     if (count[0] == 2 && count[1] == 2 && path->pair.dim == 3) {
         struct turn_direction edges = {.of = 2};
@@ -162,19 +175,24 @@ unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_
     return count[0] == count[1] ? 2 : 1;
 }
 
-double turn_along(struct turn_path *path, const struct turn_direction *direction, double s)
+void turn_normal(const struct turn_path *path, const struct turn_direction *direction,
+                 double out[FMB_DIM_MAX])
 {
     const struct support_view *view = path->pair.view;
-    const int of = direction->of;
+    double e[FMB_DIM_MAX], f[FMB_DIM_MAX];
+    rotation_apply(&view[direction->of % 2].rotation, direction->m[0], direction->of < 2 ? out : e);
+    if (direction->of < 2)
+        return;
+    rotation_apply(&view[1].rotation, direction->m[1], f);
+    vec3_cross(e, f, out);
+}
+
+double turn_along(struct turn_path *path, const struct turn_direction *direction, double s)
+{
     struct support_column column;
-    double n[FMB_DIM_MAX], other[FMB_DIM_MAX];
+    double n[FMB_DIM_MAX];
     turn_path_pose(path, s);
-    rotation_apply(&view[of % 2].rotation, direction->m[0], of == 2 ? other : n);
-    if (of == 2) {
-        double f[FMB_DIM_MAX];
-        rotation_apply(&view[1].rotation, direction->m[1], f);
-        vec3_cross(other, f, n);
-    }
+    turn_normal(path, direction, n);
     const double length = sqrt(vec3_dot(n, n));
     const double outward[FMB_DIM_MAX] = {-n[0] / length, -n[1] / length, -n[2] / length};
     return -support_farthest(&path->pair, outward, &column) - path->pair.radius[1];
@@ -242,6 +260,7 @@ static void subtract_support(const struct support_view *view, double c[6][FMB_DI
  * A coefficient k is off by C(5, k) error. */
 struct turn_polynomial {
     double value[6], length[6], error;
+    double below[6]; /* coefficients of a polynomial that is at most |n| */
 };
 
 static void fixed_polynomial(const struct turn_path *path, const struct turn_direction *direction,
@@ -276,6 +295,7 @@ static void fixed_polynomial(const struct turn_path *path, const struct turn_dir
                 out->value[k] += o[i] * other->norm[k - i];
     }
     subtract_support(&view[!f], c, -way, out->value);
+    memcpy(out->below, out->length, sizeof out->below);
     out->error = length;
 }
 
@@ -310,9 +330,13 @@ static void product_polynomial(const struct turn_path *path, const struct turn_d
             vec3_cross(x[f][k], m[!f], c[k]);
         subtract_support(&path->pair.view[!f], c, -sign, out->value);
     }
-    for (int k = 0; k < 6; k++)
+    const double middle = sqrt(vec3_dot(n[2], n[2])) * (1 + 0x1p-50);
+    for (int k = 0; k < 6; k++) {
         out->length[k] = k < 5 ? sqrt(vec3_dot(n[k], n[k])) * (1 + 0x1p-50) : 0;
+        out->below[k] = k < 5 ? vec3_dot(n[k], n[2]) / middle : 0;
+    }
     raise_degree(out->length, 1);
+    raise_degree(out->below, 1);
     out->error = sqrt(vec3_dot(m[0], m[0])) * sqrt(vec3_dot(m[1], m[1])) * (1 + 0x1p-50);
 }
 
@@ -339,17 +363,23 @@ static void set_polynomial(const struct turn_path *path, const struct turn_direc
 double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
                      double lo, double hi)
 {
-    const double radius = path->pair.radius[1];
     struct turn_polynomial of;
     double least = INFINITY;
+    bool negative = false;
     set_polynomial(path, direction, 1, lo, hi, &of);
+    for (int k = 0; k < 6; k++)
+        negative = negative || !(of.value[k] - binomial[k] * of.error > 0);
     for (int k = 0; k < 6; k++) {
         const double certain = of.value[k] - binomial[k] * of.error;
-        if (!(certain - radius * of.length[k] > 0))
+        const double off = binomial[k] * of.error / path->pair.reach;
+        const double divisor = (negative ? of.below[k] - off : of.length[k] + off);
+        if (!(divisor > 0))
             return -INFINITY;
-        least = fmin(least, certain / (of.length[k] + binomial[k] * of.error / path->pair.reach));
+        least = fmin(least, certain / divisor);
     }
-    return least * (1 - 0x1p-40) - radius;
+    if (negative)
+        least = fmin(least, 0);
+    return least - (fabs(least) * 0x1p-50 + path->pair.radius[1]);
 }
 
 bool turn_may_separate(const struct turn_path *path, const struct turn_direction *direction,

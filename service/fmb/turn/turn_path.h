@@ -45,8 +45,9 @@
 #include "support_round.h"
 
 struct turn_path {
-    struct support_pair pair; /* at the pose last set */
-    double q[2][2][4];        /* [frame][begin, end] */
+    struct support_pair pair;           /* at the pose last set */
+    double q[2][2][4];                  /* [frame][begin, end] */
+    double position[2][2][FMB_DIM_MAX]; /* [frame][begin, end]; the end rounded twice */
     double offset[2][FMB_DIM_MAX];
     double farthest; /* bounds the length of the offset, and what its error is relative to */
 };
@@ -83,16 +84,23 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
 void turn_body_direction(const struct support_view *view, const double n[FMB_DIM_MAX],
                          double out[FMB_DIM_MAX]);
 
-/* Sets up to two directions near the nearest direction of a look at the present pose. Returns their
- * number. */
+/* Sets up to two directions near the nearest direction of a look at the present pose. slack: of the
+ * vertices that count as supporting, relative to the reach. Returns their number. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
-                         struct turn_direction out[2]);
+                         double slack, struct turn_direction out[2]);
 
 /* Returns the least n . (b - a) / |n| at s, rounded, less the radii; sets the pose. */
 double turn_along(struct turn_path *path, const struct turn_direction *direction, double s);
 
-/* Returns a lower bound of the distance of the frames in a direction over the interval [lo, hi]: a
- * positive one proves that they are apart. -INFINITY if none is known. */
+/* out := the direction at the present pose, in the world; not of unit length. */
+void turn_normal(const struct turn_path *path, const struct turn_direction *direction,
+                 double out[FMB_DIM_MAX]);
+
+/* Returns a lower bound of n . (b - a) / |n| over the interval [lo, hi], less the radii: a positive
+ * one proves that the frames are apart. -INFINITY if none is known. A quotient of polynomials is at
+ * least the least quotient of their coefficients, if those of the divisor are positive. It is |n|
+ * if a coefficient is negative, and the direction is fixed in a frame; if it is a product, what n
+ * is along one vector, the middle one of its coefficients, which is less. */
 double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
                      double lo, double hi);
 
@@ -104,6 +112,6 @@ bool turn_may_separate(const struct turn_path *path, const struct turn_direction
 /* Lists vertices with nearly the greatest n . v. In: n, body coordinates. out: [count of vertices]
  */
 unsigned turn_farthest(const struct support_view *view, const double n[FMB_DIM_MAX], double sign,
-                       uint16_t *out);
+                       double slack, uint16_t *out);
 
 #endif

@@ -1,0 +1,192 @@
+#include "turn_gap.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { GAP_LOOKS_MAX = 2000, GAP_LOOKS_STEP = 16 };
+
+/* Pieces shorter than this use a second direction. */
+static const double wide_piece = 0x1p-6;
+
+/* Of fmb.h, with a margin for the rounding of the largest coordinate. */
+static const double limit = 0.95e-12;
+
+/* Returns a lower bound, up to rounding, of the largest coordinate of a vertex at s. */
+static double largest_coordinate(struct turn_path *path, double s)
+{
+    double largest = 0;
+    turn_path_pose(path, s);
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < path->pair.dim; axis++)
+            for (int sign = -1; sign <= 1; sign += 2) {
+                const struct support_view *view = &path->pair.view[f];
+                double n[FMB_DIM_MAX] = {0};
+                n[axis] = sign;
+                largest = fmax(largest, support_view_farthest(view, n).value +
+                                            sign * path->pair.position[f][axis] +
+                                            view->placed.frame->radius);
+            }
+    return largest;
+}
+
+/* ---- One piece ---- */
+
+static void push(struct turn_gap *gap, double lo, double hi, double least, bool looked)
+{
+    gap->piece[gap->count++] = (struct turn_piece){lo, hi, least, looked};
+}
+
+/* Takes the gap at the middle of the piece that is looked at, and bounds it over the piece by its
+ * direction n, in the order of the path. In: the pose of the path is that in the middle. */
+static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
+{
+    struct turn_direction direction[2];
+    const struct turn_piece *next = &gap->next;
+    double least = next->least;
+    /* Also with the vertices that come into play within the piece. */
+    for (int wide = 0; wide < 2; wide++) {
+        const double slack = wide ? next->hi - next->lo : 0;
+        const unsigned count = turn_directions(gap->path, n, slack, direction);
+        for (unsigned k = 0; k < count && slack < wide_piece; k++)
+            least = fmax(least, turn_distance(gap->path, &direction[k], next->lo, next->hi));
+    }
+    if (gap->at.bounds[1] < gap->best.bounds[1])
+        gap->best = gap->at;
+    if (least <= gap->best.bounds[1] && next->lo < next->hi)
+        push(gap, next->lo, next->hi, least, true);
+}
+
+/* A look that proves no verdict: the frames are as near as the point that was found. */
+static void take_unsure(struct turn_gap *gap, const struct support_nearest *nearest)
+{
+    const struct support_pair *pair = &gap->path->pair;
+    const bool known = nearest->outcome == GAP_KNOWN;
+    double n[FMB_DIM_MAX];
+    memcpy(n, known ? nearest->direction : gap->toward, sizeof n);
+    if (!(vec3_dot(n, n) > 0)) {
+        if (gap->next.lo < gap->next.hi)
+            push(gap, gap->next.lo, gap->next.hi, gap->next.least, true);
+        return;
+    }
+    const double outward[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
+    struct support_column column;
+    gap->at.bounds[0] =
+        -support_farthest(pair, outward, &column) - (1.25 * pair->error + pair->radius[1]);
+    gap->at.bounds[1] = support_distance_above(pair, nearest) - pair->radius[0];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        gap->at.direction[axis] = (gap->swapped ? -1 : 1) * n[axis] + 0.0;
+    take(gap, n);
+}
+
+static void take_known(struct turn_gap *gap)
+{
+    double n[FMB_DIM_MAX];
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        n[axis] = (gap->swapped ? -1 : 1) * gap->at.direction[axis];
+    gap->at.time = gap->at.has_witness ? gap->path->pair.at * gap->path->pair.frames->duration : 0;
+    memcpy(gap->toward, n, sizeof n);
+    take(gap, n);
+}
+
+/* Looks at the middle of a piece. */
+static void look(struct turn_gap *gap, struct turn_piece piece)
+{
+    struct support_pair *pair = &gap->path->pair;
+    struct support_nearest nearest;
+    double toward[FMB_DIM_MAX];
+    gap->next = piece;
+    memset(&gap->at, 0, sizeof gap->at);
+    gap->looks++;
+    turn_path_pose(gap->path, 0.5 * (piece.lo + piece.hi));
+    support_toward(pair, toward);
+    enum fmb_verdict cores = support_search_from(pair, toward, INFINITY, &nearest);
+    /* A simplex with the origin on its boundary proves nothing: another beginning, another one. */
+    for (int k = 0; k < 2 && cores == 0 && !gap->separated; k++) {
+        const double turned[FMB_DIM_MAX] = {toward[1] - toward[2], -toward[0], toward[0]};
+        memcpy(toward, turned, (size_t) pair->dim * sizeof *toward);
+        if (vec3_dot(toward, toward) > 0)
+            cores = support_search_from(pair, toward, INFINITY, &nearest);
+    }
+    enum fmb_verdict verdict = pair->rounded ? support_round_verdict(pair, cores, &nearest) : cores;
+    if (gap->separated)
+        cores = verdict = FMB_SEPARATED;
+    if (cores == 0 || verdict == 0)
+        take_unsure(gap, &nearest);
+    else if (support_gap_of_pair(pair, gap->swapped, &nearest, cores, verdict, INFINITY, &gap->at,
+                                 &gap->work) == GAP_KNOWN)
+        take_known(gap);
+}
+
+/* ---- All pieces ---- */
+
+void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double farthest,
+                    struct turn_gap *out)
+{
+    out->path = path;
+    out->separated = separated;
+    out->swapped = swapped;
+    out->farthest = farthest;
+    out->count = out->looks = 0;
+    out->work = NULL;
+    out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
+    out->best = gap_none();
+    out->best.bounds[1] = INFINITY;
+    memset(out->toward, 0, sizeof out->toward);
+    /* The ends first, where the least gap often is. */
+    push(out, 0, 1, -INFINITY, false);
+    push(out, 1, 1, -INFINITY, false);
+    push(out, 0, 0, -INFINITY, false);
+}
+
+enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_gap *out)
+{
+    const unsigned end = gap->looks + GAP_LOOKS_STEP;
+    *failed = false;
+    if (gap->work) {
+        if (support_gap_step(gap->work, &gap->at) == GAP_UNSURE)
+            return GAP_UNSURE;
+        gap->work = NULL;
+        take_known(gap);
+    }
+    while (gap->looks < end && !gap->work) {
+        unsigned first = 0;
+        for (unsigned k = 1; k < gap->count; k++)
+            if (gap->piece[k].least <= gap->piece[first].least)
+                first = k;
+        const double least = gap->count ? gap->piece[first].least : gap->best.bounds[0];
+        if (least > gap->farthest + gap->tight)
+            return GAP_FAR;
+        if (gap->best.bounds[1] - least <= gap->tight) {
+            *out = gap->best;
+            out->bounds[0] = fmin(least, out->bounds[0]);
+            if (!gap->separated) {
+                out->bounds[1] = fmin(out->bounds[1], 0);
+                out->has_witness = false;
+                out->time = 0;
+                memset(out->witness, 0, sizeof out->witness);
+            }
+            return GAP_KNOWN;
+        }
+        const struct turn_piece piece = gap->piece[first];
+        *failed = gap->count == 0 || gap->looks > GAP_LOOKS_MAX || gap->count + 2 > TURN_PIECES ||
+                  (piece.looked && piece.hi - piece.lo < 0x1p-49);
+        if (*failed)
+            return GAP_KNOWN;
+        gap->piece[first] = gap->piece[--gap->count];
+        if (piece.looked) {
+            const double middle = 0.5 * (piece.lo + piece.hi);
+            push(gap, middle, piece.hi, piece.least, false);
+            push(gap, piece.lo, middle, piece.least, false);
+        } else {
+            look(gap, piece);
+        }
+    }
+    return GAP_UNSURE;
+}
+
+void turn_gap_end(struct turn_gap *gap)
+{
+    if (gap->work)
+        support_gap_end(gap->work);
+    gap->work = NULL;
+}
