@@ -17,6 +17,7 @@
 #   deps-fuzz     fuzz, fuzz-afl, fuzz-merge, fuzzers
 #   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root);
 #                 release: tarball, packages and their sums, into build/release
+#                 (tests/deb/readme.sh SUITE follows README.md in a chroot)
 #   deps-aarch64  aarch64: fmb for AArch64, which 'make test' then emulates
 #
 # Variables:

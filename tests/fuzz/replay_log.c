@@ -240,6 +240,7 @@ static void check_reporting(struct replay_options options, int64_t limit, bool p
     check_json(json, &reporting, &tally);
     report_others(&reporting, &tally);
     free(json);
+    tally_clear(&tally);
     page_close(options.page);
     listing_close(reporting.list);
 }
