@@ -210,7 +210,7 @@ static char *report_all_json(struct reporting *reporting, const struct tally *ta
 }
 
 /* For people and for CI systems: whatever it is, it can be written. */
-static void report_others(struct reporting *reporting, const struct tally *tally)
+static void report_others(struct reporting *reporting, struct tally *tally)
 {
     char *text;
     size_t size;
