@@ -101,8 +101,10 @@ static void model_init(struct model *model, const struct pair *pair, unsigned i,
     int next = 0;
     model->goals = 0;
     model->dim = pair->a.body->dim;
-    rational_solid_init(fmb_body_frame(pair->a.body, i), &pair->a, &model->solid[0]);
-    rational_solid_init(fmb_body_frame(pair->b.body, j), &pair->b, &model->solid[1]);
+    rational_solid_init_at(fmb_body_frame(pair->a.body, i), &pair->a, pair->at, pair->duration,
+                           &model->solid[0]);
+    rational_solid_init_at(fmb_body_frame(pair->b.body, j), &pair->b, pair->at, pair->duration,
+                           &model->solid[1]);
     for (int side = 0; side < 2; side++) {
         for (int axis = 0; axis < model->dim; axis++)
             mpq_add(model->solid[side].origin[axis], model->solid[side].origin[axis],

@@ -3,12 +3,17 @@
 #ifndef PLACED_PAIR_H
 #define PLACED_PAIR_H
 
+#include <gmp.h>
+
 #include "fmb.h"
 #include "pair.h"
 
 struct pair {
     struct fmb_placement a, b;
     double duration; /* seconds */
+    /* Read by the oracle only. Not NULL: both bodies at rest where they are at this time, as a share
+     * of the window. NULL: the window; there are no ends. */
+    mpq_srcptr at;
 };
 
 /* FMB_OK, or the status with which fmb_decide() refuses the pair. */

@@ -137,6 +137,9 @@ struct fmb_placement solid_placement(const struct solid *solid, const struct fmb
     if (solid->moving)
         memcpy(placement.velocity, solid->velocity, sizeof placement.velocity);
     memcpy(placement.orientation, solid->orientation, sizeof placement.orientation);
+    memcpy(placement.end_position, solid->end_origin, sizeof placement.end_position);
+    memcpy(placement.end_orientation, solid->end_orientation, sizeof placement.end_orientation);
+    placement.end_count = solid->ending ? solid->dim + solid->orientation_count : 0;
     return placement;
 }
 
@@ -190,7 +193,9 @@ bool question_is_symmetric(const struct question *question)
              same_numbers(a->local, b->local, a->dim))) &&
            same_numbers(a->origin, b->origin, a->dim) &&
            same_numbers(a->moving ? a->velocity : rest, b->moving ? b->velocity : rest, a->dim) &&
-           same_numbers(a->orientation, b->orientation, a->orientation_count);
+           same_numbers(a->orientation, b->orientation, a->orientation_count) &&
+           a->ending == b->ending && same_numbers(a->end_origin, b->end_origin, a->dim) &&
+           same_numbers(a->end_orientation, b->end_orientation, a->orientation_count);
 }
 
 struct question question_swapped(const struct question *question)
@@ -222,7 +227,7 @@ static void print_solid(const char *name, const struct solid *solid)
 {
     static const char *const shapes[] = {"0",        "FMB_CUBOID", "FMB_TETRAHEDRON",
                                          "FMB_FACE", "FMB_BOX",    "FMB_HULL"};
-    const double *q = solid->orientation;
+    const double *q = solid->orientation, *end = solid->end_orientation;
     printf("#   .%s = {%d, %s, {", name, solid->dim, shapes[solid->shape]);
     for (int i = 0; i < FMB_DIM_MAX; i++) {
         print_vector(solid->component[i]);
@@ -240,7 +245,13 @@ static void print_solid(const char *name, const struct solid *solid)
         printf("%s", v ? ", " : "");
         print_vector(solid->vertex[v]);
     }
-    printf("}, 0x%llx, %a},\n", (unsigned long long) solid->cloud_seed, solid->radius);
+    printf("}, 0x%llx, %a", (unsigned long long) solid->cloud_seed, solid->radius);
+    if (solid->ending) {
+        printf(", true,\n#      ");
+        print_vector(solid->end_origin);
+        printf(", {%a, %a, %a, %a}", end[0], end[1], end[2], end[3]);
+    }
+    printf("},\n");
 }
 
 int question_numbers(struct question *question, double *out[QUESTION_NUMBERS_MAX])

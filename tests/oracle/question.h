@@ -35,6 +35,8 @@ struct solid {
     double vertex[SOLID_LISTED_MAX][FMB_DIM_MAX];
     uint64_t cloud_seed;
     double radius; /* of each of its frames */
+    bool ending;   /* has this pose at the end of the window, and no velocity; else 0 */
+    double end_origin[FMB_DIM_MAX], end_orientation[4];
 };
 
 enum { SOLID_FRAMES_MAX = 8 };

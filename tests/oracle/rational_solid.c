@@ -44,17 +44,52 @@ static void twice(mpq_t out, const mpq_t u, const mpq_t v, int sign, const mpq_t
     mpq_add(out, out, out);
 }
 
+static void set_orientation(const double *number, int count, mpq_t q[4])
+{
+    mpq_set_d(q[0], count ? number[0] : 1);
+    for (int i = 1; i < 4; i++)
+        mpq_set_ui(q[i], 0, 1);
+    for (int i = 1; i < count; i++)
+        mpq_set_d(q[count == 2 ? 3 : i], number[i]);
+}
+
+void rational_orientation(const struct fmb_placement *placement, mpq_t start[4], mpq_t end[4])
+{
+    const int count = placement->orientation_count;
+    mpq_t dot;
+    mpq_init(dot);
+    set_orientation(placement->orientation, count, start);
+    set_orientation(placement->end_count ? placement->end_orientation : placement->orientation,
+                    count, end);
+    for (int i = 0; i < 4; i++)
+        rational_add_product(dot, 1, start[i], end[i]);
+    for (int i = 0; i < 4 && mpq_sgn(dot) < 0; i++)
+        mpq_neg(end[i], end[i]);
+    mpq_clear(dot);
+}
+
+/* out += at * (end - out). */
+static void move_on(mpq_t out, mpq_srcptr at, const mpq_t end)
+{
+    mpq_t way;
+    mpq_init(way);
+    mpq_sub(way, end, out);
+    rational_add_product(out, 1, way, at);
+    mpq_clear(way);
+}
+
 /* The matrix of fmb.h; of a planar quaternion, that of (w, 0, 0, z). */
-static void set_rotation(const struct fmb_placement *placement, mpq_t matrix[3][3])
+static void set_rotation(const struct fmb_placement *placement, mpq_srcptr at, mpq_t matrix[3][3])
 {
     enum { W, X, Y, Z };
     static const int sign[3][4] = {{1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
-    mpq_t q[4], norm;
-    mpq_inits(q[W], q[X], q[Y], q[Z], norm, NULL);
-    const int count = placement->orientation_count;
-    mpq_set_d(q[W], count ? placement->orientation[0] : 1);
-    for (int i = 1; i < count; i++)
-        mpq_set_d(q[count == 2 ? Z : i], placement->orientation[i]);
+    mpq_t q[4], end[4], norm;
+    mpq_init(norm);
+    for (int i = 0; i < 4; i++)
+        mpq_inits(q[i], end[i], NULL);
+    rational_orientation(placement, q, end);
+    for (int i = 0; i < 4 && at; i++)
+        move_on(q[i], at, end[i]);
     for (int i = 0; i < 4; i++)
         rational_add_product(norm, 1, q[i], q[i]);
     for (int axis = 0; axis < 3; axis++) {
@@ -71,7 +106,27 @@ static void set_rotation(const struct fmb_placement *placement, mpq_t matrix[3][
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 3; column++)
             mpq_div(matrix[row][column], matrix[row][column], norm);
-    mpq_clears(q[W], q[X], q[Y], q[Z], norm, NULL);
+    for (int i = 0; i < 4; i++)
+        mpq_clears(q[i], end[i], NULL);
+    mpq_clear(norm);
+}
+
+/* At that time, at rest. */
+static void stop(const struct fmb_placement *placement, mpq_srcptr at, double duration,
+                 struct rational_solid *out)
+{
+    mpq_t end;
+    mpq_init(end);
+    for (int axis = 0; axis < placement->body->dim; axis++) {
+        mpq_set_d(end, duration);
+        mpq_mul(end, end, out->velocity[axis]);
+        mpq_add(end, end, out->origin[axis]);
+        if (placement->end_count)
+            mpq_set_d(end, placement->end_position[axis]);
+        move_on(out->origin[axis], at, end);
+        mpq_set_ui(out->velocity[axis], 0, 1);
+    }
+    mpq_clear(end);
 }
 
 /* out += matrix * vector. */
@@ -122,18 +177,26 @@ static void set_local(const struct fmb_frame *frame, struct rational_solid *out)
 void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placement *placement,
                          struct rational_solid *out)
 {
+    rational_solid_init_at(frame, placement, NULL, 0, out);
+}
+
+void rational_solid_init_at(const struct fmb_frame *frame, const struct fmb_placement *placement,
+                            mpq_srcptr at, double duration, struct rational_solid *out)
+{
     struct rational_solid local;
     mpq_t matrix[3][3];
     for (int i = 0; i < 9; i++)
         mpq_init(matrix[i / 3][i % 3]);
     set_local(frame, &local);
-    set_rotation(placement, matrix);
+    set_rotation(placement, at, matrix);
     allocate(out, local.count, local.hull);
     mpq_set_d(out->radius, frame->radius);
     for (int axis = 0; axis < frame->dim; axis++) {
         mpq_set_d(out->origin[axis], placement->position[axis]);
         mpq_set_d(out->velocity[axis], placement->velocity[axis]);
     }
+    if (at)
+        stop(placement, at, duration, out);
     add_turned(matrix, local.origin, out->origin);
     for (int i = 0; i < local.count; i++)
         add_turned(matrix, local.column[i], out->column[i]);

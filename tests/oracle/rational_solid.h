@@ -26,7 +26,15 @@ struct rational_solid {
 
 void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placement *placement,
                          struct rational_solid *out);
+
+/* The same at a time, in shares of the window, and at rest; at NULL: as above. */
+void rational_solid_init_at(const struct fmb_frame *frame, const struct fmb_placement *placement,
+                            mpq_srcptr at, double duration, struct rational_solid *out);
 void rational_solid_clear(struct rational_solid *solid);
+
+/* The orientation, (w, x, y, z) also in 2D, at the start and, if there is an end, at the end, with
+ * the sign that makes the turn less than half a one. */
+void rational_orientation(const struct fmb_placement *placement, mpq_t start[4], mpq_t end[4]);
 
 /* The greatest of sign * (coordinate of a vertex over the window), plus the radius. */
 void rational_solid_farthest(struct rational_solid *solid, const mpq_t duration, int axis, int sign,

@@ -49,8 +49,10 @@ void world_set_part(struct world *world, const mpq_t first, const mpq_t last)
 void world_init(struct world *world, const struct pair *pair, unsigned i, unsigned j)
 {
     world->dim = pair->a.body->dim;
-    rational_solid_init(fmb_body_frame(pair->a.body, i), &pair->a, &world->solid[0]);
-    rational_solid_init(fmb_body_frame(pair->b.body, j), &pair->b, &world->solid[1]);
+    rational_solid_init_at(fmb_body_frame(pair->a.body, i), &pair->a, pair->at, pair->duration,
+                           &world->solid[0]);
+    rational_solid_init_at(fmb_body_frame(pair->b.body, j), &pair->b, pair->at, pair->duration,
+                           &world->solid[1]);
     mpq_inits(world->duration, world->radius, world->scale, NULL);
     rational_vector_init(world->offset);
     rational_vector_init(world->drift);
@@ -103,33 +105,31 @@ void world_from_core(struct world *world, int side, const mpq_t time, rational_v
 }
 
 /* Raises out to the largest absolute coordinate of the body. */
-static void raise_to_size(const struct fmb_placement *placement, const mpq_t duration, mpq_t out)
+static void raise_to_size(const struct fmb_placement *placement, mpq_srcptr at, double duration,
+                          mpq_t out)
 {
     struct rational_solid solid;
-    mpq_t one;
-    mpq_init(one);
+    mpq_t one, window;
+    mpq_inits(one, window, NULL);
+    mpq_set_d(window, duration);
     for (unsigned i = 0; i < placement->body->frame_count; i++) {
-        rational_solid_init(fmb_body_frame(placement->body, i), placement, &solid);
+        rational_solid_init_at(fmb_body_frame(placement->body, i), placement, at, duration, &solid);
         for (int axis = 0; axis < placement->body->dim; axis++)
             for (int sign = -1; sign <= 1; sign += 2) {
-                rational_solid_farthest(&solid, duration, axis, sign, one);
+                rational_solid_farthest(&solid, window, axis, sign, one);
                 if (mpq_cmp(one, out) > 0)
                     mpq_set(out, one);
             }
         rational_solid_clear(&solid);
     }
-    mpq_clear(one);
+    mpq_clears(one, window, NULL);
 }
 
 void world_size(const struct pair *pair, mpq_t out)
 {
-    mpq_t duration;
-    mpq_init(duration);
-    mpq_set_d(duration, pair->duration);
     mpq_set_ui(out, 0, 1);
-    raise_to_size(&pair->a, duration, out);
-    raise_to_size(&pair->b, duration, out);
-    mpq_clear(duration);
+    raise_to_size(&pair->a, pair->at, pair->duration, out);
+    raise_to_size(&pair->b, pair->at, pair->duration, out);
 }
 
 void world_limit(const struct pair *pair, mpq_t out)

@@ -1,0 +1,144 @@
+/* The oracle of turning bodies: on cases worked out by hand, against the static oracle at many
+ * times, and with time reversed. */
+
+#include "unit.h"
+
+#include "question.h"
+#include "turning.h"
+
+/* clang-format off */
+#define CUBE {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
+#define POSED(kind, ...) {.dim = 3, .shape = FMB_##kind, .component = __VA_ARGS__
+#define REST(...) , .origin = __VA_ARGS__}
+#define FROM(...) , .ending = true, .orientation_count = 4, .origin = __VA_ARGS__
+#define QUATERNION(...) , .orientation = __VA_ARGS__
+#define TO(...) , .end_origin = __VA_ARGS__
+#define TURNED(...) , .end_orientation = __VA_ARGS__}
+#define TABLE POSED(BOX, {{9, 0, 0}, {0, 9, 0}, {0, 0, 2}}) REST({0, 0, -1})
+/* Half as high as long: its corner is 5/2 from the middle, by 3-4-5. */
+#define ROD POSED(BOX, {{4, 0, 0}, {0, 3, 0}, {0, 0, 1}})
+
+struct known {
+    const char *what;
+    struct question question;
+    enum fmb_verdict verdict;
+    double contact[2];
+};
+
+static const struct known known[] = {
+    {"a cube yaws and slides on a table",
+     {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5}) QUATERNION({1, 0, 0, 0}) TO({1, 0, 0.5}) TURNED({1, 0, 0, 0.5}), 1},
+     FMB_TOUCHING, {0, 1}},
+    {"a little above",
+     {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5 + 0x1p-40}) QUATERNION({1, 0, 0, 0}) TO({1, 0, 0.5 + 0x1p-40}) TURNED({1, 0, 0, 0.5}), 1},
+     FMB_SEPARATED, {0}},
+    {"a little below",
+     {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5 - 0x1p-40}) QUATERNION({1, 0, 0, 0}) TO({1, 0, 0.5 - 0x1p-40}) TURNED({1, 0, 0, 0.5}), 1},
+     FMB_OVERLAPPING, {0, 1}},
+    {"it lifts off",
+     {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5}) QUATERNION({1, 0, 0, 0}) TO({0, 0, 0.75}) TURNED({1, 0, 0, -0.5}), 1},
+     FMB_TOUCHING, {0, 0}},
+    {"it lands",
+     {TABLE, POSED(BOX, CUBE) FROM({0, 0, 1}) QUATERNION({1, 0, 0, 0.25}) TO({0, 0, 0.5}) TURNED({1, 0, 0, -0.5}), 1},
+     FMB_TOUCHING, {1, 1}},
+    {"it tumbles over an edge that stays on the table",
+     {TABLE, POSED(CUBOID, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, -1, 0}), 1},
+     FMB_TOUCHING, {0, 1}},
+    {"both on one turntable, a quarter turn",
+     {POSED(BOX, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}),
+      POSED(CUBOID, CUBE), .local = {0.5, 0, 0} FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
+     FMB_TOUCHING, {0, 1}},
+    {"a rod grazes a ceiling in passing: its corner is 5 / 2 from the middle",
+     {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 3, 0}),
+      ROD FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
+     FMB_TOUCHING, {0.5, 0.5}},
+    {"the ceiling an ulp lower",
+     {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 3 - 0x1p-51, 0}),
+      ROD FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
+     FMB_OVERLAPPING, {0.5, 0.5}},
+    {"an ulp higher",
+     {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 3 + 0x1p-51, 0}),
+      ROD FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
+     FMB_SEPARATED, {0}},
+    {"a square rod under a ceiling at half a diagonal, rounded down",
+     {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 0.5 + 0x1.6a09e667f3bccp-1, 0}),
+      POSED(BOX, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
+     FMB_OVERLAPPING, {0.414214, 0.414214}},
+    {"rounded up",
+     {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 0.5 + 0x1.6a09e667f3bcep-1, 0}),
+      POSED(BOX, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
+     FMB_SEPARATED, {0}},
+    {"a point passes through a turning plate, at the root of 416 less 20",
+     {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 1, 0, 0}),
+      POSED(CUBOID, {{0}}) REST({0.25, 0.625, 0.125}), 1},
+     FMB_OVERLAPPING, {0.396078, 0.396078}},
+    {"beside it",
+     {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 1, 0, 0}),
+      POSED(CUBOID, {{0}}) REST({1.25, 0.625, 0.125}), 1},
+     FMB_SEPARATED, {0}},
+    {"on its edge",
+     {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 1, 0, 0}),
+      POSED(CUBOID, {{0}}) REST({1, 0.625, 0.125}), 1},
+     FMB_TOUCHING, {0.396078, 0.396078}},
+    {"two plates yaw in one plane",
+     {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 0, 0, 1}),
+      POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0.5, 0.5, 0}) QUATERNION({4, 0, 0, 0}) TO({0.5, 0.5, 0}) TURNED({4, 0, 0, -1}), 1},
+     FMB_OVERLAPPING, {0, 1}},
+    {"two segments cross at their middles, in one instant",
+     {POSED(CUBOID, {{2, 0, 0}}), .local = {-1} FROM({0}) QUATERNION({3, 0, 0, 0}) TO({0}) TURNED({3, 0, 0, 1}),
+      POSED(CUBOID, {{0, 2, 0}}), .local = {0, -1} FROM({0, 0, 1}) QUATERNION({1, 0, 0, 0}) TO({0, 0, -2}) TURNED({1, 0, 0, 0}), 1},
+     FMB_OVERLAPPING, {0.333333, 0.333333}},
+    {"in the plane: a segment swings into a square at rest",
+     {{.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}, .origin = {1, 1}},
+      {.dim = 2, .shape = FMB_CUBOID, .component = {{4, 0}, {0, 0}}, .orientation_count = 2, .orientation = {1, 0},
+       .ending = true, .end_orientation = {1, 1}}, 1},
+     FMB_OVERLAPPING, {0.236068, 0.618034}},
+    {"in the plane: it stops at the corner",
+     {{.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}, .origin = {4, 3}},
+      {.dim = 2, .shape = FMB_CUBOID, .component = {{5, 0}, {0, 0}}, .orientation_count = 2, .orientation = {1, 0},
+       .ending = true, .end_orientation = {3, 1}}, 1},
+     FMB_TOUCHING, {1, 1}},
+};
+/* clang-format on */
+
+static void decide(const struct question *question, struct turning_truth *truth)
+{
+    struct fmb_body body[2];
+    struct pair pair;
+    question_pair(question, body, &pair);
+    turning_init(truth);
+    turning_decide(&pair, truth);
+}
+
+static bool is_near(const mpq_t time, double expected)
+{
+    return mpq_get_d(time) > expected - 1e-5 && mpq_get_d(time) < expected + 1e-5;
+}
+
+static void known_cases(void **state)
+{
+    for (size_t i = 0; i < COUNT(known); i++)
+        for (int order = 0; order < 2; order++) {
+            const struct question swapped = question_swapped(&known[i].question);
+            struct turning_truth truth;
+            decide(order ? &swapped : &known[i].question, &truth);
+            if (truth.least != known[i].verdict || truth.most != known[i].verdict || !truth.whole)
+                fail_msg("%s: from %s to %s", known[i].what, fmb_verdict_name(truth.least),
+                         fmb_verdict_name(truth.most));
+            if (truth.least != FMB_SEPARATED && (!is_near(truth.first[0], known[i].contact[0]) ||
+                                                 !is_near(truth.first[1], known[i].contact[0]) ||
+                                                 !is_near(truth.last[0], known[i].contact[1]) ||
+                                                 !is_near(truth.last[1], known[i].contact[1])))
+                fail_msg("%s: contact from %.17g to %.17g", known[i].what,
+                         mpq_get_d(truth.first[0]), mpq_get_d(truth.last[1]));
+            turning_clear(&truth);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(known_cases),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
