@@ -33,7 +33,7 @@ see_tests/unit := $(call fmb,number frame filter article tree limbs gap support 
 test_programs := plain:system/plain busy:system/busy fake-peer:system/fake_peer events:system/events crash-liblcm:system/crash_liblcm \
 	edit-log:replay/edit_log logs/generate:logs/generate logs/describe-log:logs/describe_log \
 	mesh/make-mesh:mesh/make_mesh path-planted:path/planted $(foreach s,load memory rate blast fair relay families,soak-$s:soak/$s)
-measures := accuracy:campaign/accuracy checked:checked/checked \
+measures := accuracy:campaign/accuracy turning:campaign/turning checked:checked/checked \
 	hull-poses:bench/hull_poses bench/bench:bench/bench bus/bench-bus:bus/bench_bus \
 	bus/echo:bus/echo robot/robot:robot/robot
 mains := $(foreach p,$(test_programs) $(measures),$(lastword $(subst :, ,$p)))
@@ -55,7 +55,7 @@ $(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in
 $(shared) $(units) $(measuring):
 	@rm -f $@
 	$(call say,AR,$@) $(AR) qcs $@ $^
-looks_inside := accuracy checked bench/bench bus/bench-bus logs/generate soak-families
+looks_inside := accuracy turning checked bench/bench bus/bench-bus logs/generate soak-families
 $(looks_inside:%=$(B)/%) $(B)/accuracy-planted: $(shared) $(client) $(product) $(engine)
 $(filter-out $(looks_inside:%=$(B)/%),$(test_programs) $(measures)): \
 	$(shared) $(client) $(product) $(B)/libfmb.a

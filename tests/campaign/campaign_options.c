@@ -58,13 +58,14 @@ static bool is_named(const struct family *family)
 
 static bool take_family(const struct options_program *program, struct options *out)
 {
+    const struct family *(*list)(size_t) = program->list ? program->list : family_all_at;
     const int before = out->families;
-    for (size_t i = 0; family_all_at(i); i++) {
-        if (!is_named(family_all_at(i)))
+    for (size_t i = 0; list(i); i++) {
+        if (!is_named(list(i)))
             continue;
         if (out->families == OPTIONS_FAMILIES_MAX)
             return refuse(program, "--family: at most %d", OPTIONS_FAMILIES_MAX);
-        out->family[out->families++] = family_all_at(i);
+        out->family[out->families++] = list(i);
     }
     return out->families > before || refuse(program, "--family: there is no '%s'", optarg);
 }

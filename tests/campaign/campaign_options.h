@@ -26,7 +26,8 @@ struct options_program {
     const char *name;
     const struct option *options; /* the values are OPTION_ ones; ends with 0s */
     void (*help)(void);
-    long pairs; /* default */
+    long pairs;                                 /* default */
+    const struct family *(*list)(size_t index); /* NULL: family_all_at() */
 };
 
 enum { OPTION_PAIRS = 1, OPTION_SEED, OPTION_WORKERS, OPTION_FAMILY, OPTION_JSON, OPTION_HELP };

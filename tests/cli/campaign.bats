@@ -75,6 +75,14 @@ setup() {
     [[ $output == *"struct question question = {"* ]] # a reproducer
 }
 
+@test "turning: no answer about turning bodies is wrong; those that rest, slide, hang, land or lift off are decided" {
+    run "$BUILD/turning" --pairs 5
+    ended 0
+    [[ ${lines[-1]} == *", 0 wrong, "* ]]
+    # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED ...
+    [ "$(awk '/^turn-(table|lift|land|tumble|door)/ { count++; undecided += $10 } END { print count, undecided }' <<< "$output")" = "11 0" ]
+}
+
 @test "campaigns print their usage, and refuse wrong options with exit code 2" {
     run "$BUILD/accuracy" --help
     ended 0
@@ -83,6 +91,10 @@ setup() {
         run "$BUILD/accuracy" $options
         ended 2
     done
+    run "$BUILD/turning" --help
+    ended 0
+    run "$BUILD/turning" --family random # not one of bodies that turn
+    ended 2
 }
 
 @test "hull-poses: doubles decide random poses of hulls" {

@@ -6,13 +6,13 @@
  *
  * if they include the normals of all facets of M within the plane, the line or the space that M
  * spans, and a basis of what is perpendicular to that. Proof: the relative interiors meet if and
- * only if 0 is in the relative interior of M. If 0 is not in what M spans, n . m is one number other
- * than 0 for some n of the basis. Otherwise 0 is outside M, or on its boundary, if and only if this
- * is so for the normal of a facet; and n . m is not 0 for all m, as n lies in what M spans.
+ * only if 0 is in the relative interior of M. If 0 is not in what M spans, n . m is one number
+ * other than 0 for some n of the basis. Otherwise 0 is outside M, or on its boundary, if and only
+ * if this is so for the normal of a facet; and n . m is not 0 for all m, as n lies in what M spans.
  *
- * The directions. Facets of a solid M belong to a face of A, a face of B, or an edge of each. A flat
- * M lies in a plane parallel to A or to B, if one of these is flat, or is a parallelogram of two
- * segments. So to the faces and edges of
+ * The directions. Facets of a solid M belong to a face of A, a face of B, or an edge of each. A
+ * flat M lies in a plane parallel to A or to B, if one of these is flat, or is a parallelogram of
+ * two segments. So to the faces and edges of
  *
  *     a polygon     belong its normal, as a face and as an edge, and, as faces, the normals of its
  *                   edges within its plane;
@@ -24,12 +24,13 @@
  * More directions than needed do no harm. In 2D all is in the plane z = 0 of space.
  *
  * The polynomials. N(s) = |q(s)|^2 R(q(s)) is one of degree 2, and so F(s) = n(s) . m(s), times
- * |q_A|^2 |q_B|^2, is one for each direction and each pair of vertices; positive factors are divided
- * out. The verdict is constant between the roots of these polynomials. An interval in which they
- * have none, or only one and the same (which their greatest common divisor has, too), is decided by
- * their signs at both ends, on both sides of the root, and at the root, where they are 0. Others are
- * halved. Sturm's theorem counts roots. Where a polynomial has one sign on a whole interval, it need
- * not be looked at again within it; a direction in which two of them have different signs neither. */
+ * |q_A|^2 |q_B|^2, is one for each direction and each pair of vertices; positive factors are
+ * divided out. The verdict is constant between the roots of these polynomials. An interval in which
+ * they have none, or only one and the same (which their greatest common divisor has, too), is
+ * decided by their signs at both ends, on both sides of the root, and at the root, where they are
+ * 0. Others are halved. Sturm's theorem counts roots. Where a polynomial has one sign on a whole
+ * interval, it need not be looked at again within it; a direction in which two of them have
+ * different signs neither. */
 #include "turning.h"
 
 #include <string.h>
@@ -43,9 +44,9 @@ enum {
     FACES_MAX = 130,
     EDGES_MAX = 60,
     HALVINGS_MAX = 700,
-    FEW = 40,         /* polynomials that are worth counting roots of */
-    WIDE = 6,         /* halvings after which it is worth it anyway */
-    BITS = 64         /* to which a time of contact is enclosed, at least */
+    FEW = 40, /* polynomials that are worth counting roots of */
+    WIDE = 6, /* halvings after which it is worth it anyway */
+    BITS = 64 /* to which a time of contact is enclosed, at least */
 };
 
 typedef mpz_t vector[3];
@@ -153,7 +154,8 @@ static void take(vector *list, int *count, int most, vector v)
     (*count)++;
 }
 
-/* Whether all vertices are on one side of the plane through vertex i, across n. on := those in it. */
+/* Whether all vertices are on one side of the plane through vertex i, across n. on := those in it.
+ */
 static bool supports(struct motion *motion, int i, vector n, unsigned *on)
 {
     vector way;
@@ -467,8 +469,8 @@ static void add_direction(struct turning *turning, polynomial_vector n, bool div
     const int first = turning->polynomials, more = count[0] * count[1];
     turning->polynomial =
         realloc(turning->polynomial, (size_t) (first + more) * sizeof *turning->polynomial);
-    turning->direction = realloc(turning->direction, (size_t) (turning->directions + 1) *
-                                                         sizeof *turning->direction);
+    turning->direction = realloc(turning->direction,
+                                 (size_t) (turning->directions + 1) * sizeof *turning->direction);
     mpz_t one, minus_one;
     mpz_init_set_si(one, 1), mpz_init_set_si(minus_one, -1);
     bool any = false;
@@ -492,8 +494,7 @@ static void add_direction(struct turning *turning, polynomial_vector n, bool div
 
 static void add_edges(struct turning *turning, vector e, vector f)
 {
-    const bool segments =
-        turning->motion[0].spanned == 1 && turning->motion[1].spanned == 1;
+    const bool segments = turning->motion[0].spanned == 1 && turning->motion[1].spanned == 1;
     polynomial_vector edge[2], n, in_plane;
     polynomial_vector_init(edge[0]), polynomial_vector_init(edge[1]), polynomial_vector_init(n);
     turn(&turning->motion[0], e, edge[0]);
@@ -626,8 +627,8 @@ static enum fmb_verdict verdict_at(struct turning *turning, const struct node *n
     for (int d = 0; d < turning->directions && verdict != FMB_SEPARATED; d++) {
         const struct direction *direction = &turning->direction[d];
         bool zero = false, side[2] = {false, false};
-        for (int p = direction->first; p < direction->first + direction->count && node->alive[d] &&
-                                       !(side[0] && side[1]);
+        for (int p = direction->first;
+             p < direction->first + direction->count && node->alive[d] && !(side[0] && side[1]);
              p++) {
             int sign = node->sign[p];
             if (common && common[p])
@@ -654,8 +655,8 @@ static const struct sturm *sturm_of(struct turning *turning, int p)
 }
 
 /* common[p] := whether polynomial p has a root in the open interval. divisor := the greatest common
- * divisor of those, 0 if there are none. Returns whether each has at most one there, and that one is
- * the same. */
+ * divisor of those, 0 if there are none. Returns whether each has at most one there, and that one
+ * is the same. */
 static bool have_one_root(struct turning *turning, const struct node *node, const mpz_t from,
                           const mpz_t to, unsigned k, bool *common, struct polynomial *divisor)
 {
@@ -682,7 +683,8 @@ static bool have_one_root(struct turning *turning, const struct node *node, cons
 }
 
 /* Encloses the root of the divisor. In: the open interval. Out: closer ends, of more halvings,
- * neither of them that of the interval. Returns false if it has no root there, or a middle is one. */
+ * neither of them that of the interval. Returns false if it has no root there, or a middle is one.
+ */
 static bool enclose(const struct polynomial *divisor, mpz_t from, mpz_t to, unsigned *k)
 {
     struct sturm sturm;
