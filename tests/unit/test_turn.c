@@ -233,7 +233,8 @@ struct resting {
     double memory[2][400];
 };
 
-/* Both orders of the pair have the same answer, which is returned; in a window of 2 s. */
+/* Both orders of the pair have the same answer, which is returned, and its verdict where nothing
+ * else is wanted; in a window of 2 s. */
 static enum fmb_status decide(const struct fmb_placement placement[2], struct fmb_answer *out)
 {
     struct fmb_answer swapped;
@@ -243,6 +244,12 @@ static enum fmb_status decide(const struct fmb_placement placement[2], struct fm
         fmb_decide(fmb_method_default(), &placement[1], &placement[0], 2, all_but_gap, &swapped),
         status);
     assert_memory_equal(out, &swapped, sizeof swapped);
+    struct fmb_prepared prepared[2];
+    enum fmb_verdict verdict = 0;
+    for (int f = 0; f < 2; f++)
+        assert_int_equal(fmb_prepare(&placement[f], 0, 1, &prepared[f]), FMB_OK);
+    assert_int_equal(fmb_decide_prepared(&prepared[0], &prepared[1], 2, &verdict), status);
+    assert_int_equal(verdict, out->verdict);
     return status;
 }
 

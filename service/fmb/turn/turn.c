@@ -243,8 +243,8 @@ static bool add_contact(struct turn_decision *decision, double s, enum fmb_verdi
         decision->overlap = s;
     }
     if (decision->phase == TURN_VERDICT && decision->overlaps) {
-        decision->phase =
-            decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX) ? TURN_FIRST : TURN_POINT;
+        if (decision->want & (FMB_WANT_TIMES | FMB_WANT_BOX))
+            decision->phase = TURN_FIRST;
         decision->count = 0;
         decision->stage = TURN_LOOK;
         if (first && decision->phase == TURN_FIRST)
