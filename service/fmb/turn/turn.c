@@ -11,7 +11,11 @@
 static const double short_interval = 0x1p-41, least_interval = 0x1p-50;
 
 enum {
-    LOOKS_MAX = 4000, /* of a decision, then it has no verdict */
+    /* The work of a decision, in searches in doubles, before it is given up without a verdict. */
+    LOOKS_MAX = 4000,
+    LOOKS_EXACT = 8,       /* for which an exact verdict counts, */
+    LOOKS_DIRECTION = 2,   /* an exact direction, */
+    VERTICES_OF_LOOK = 64, /* and so many vertices in either */
     LOOKS_BOUNDED = 200,
     LOOKS_STEP = 64,
     DIRECTIONS_MAX = 20 /* towards an end of the contact */
@@ -44,6 +48,12 @@ static void remember(struct turn_decision *decision, double at, enum fmb_verdict
     decision->next_known = (decision->next_known + 1) % TURN_KNOWN;
 }
 
+static unsigned vertices_of(const struct turn_decision *decision)
+{
+    const struct support_view *view = decision->path.pair.view;
+    return view[0].vertices.count + view[1].vertices.count;
+}
+
 static void begin_programs(struct turn_decision *decision, double s, bool nearest)
 {
     struct support_pair *pair = &decision->path.pair;
@@ -51,6 +61,7 @@ static void begin_programs(struct turn_decision *decision, double s, bool neares
     const bool guessed = pair->usable && decision->looked == s;
     const unsigned count = guessed ? support_columns(&decision->nearest.simplex, first) : 0;
     turn_path_pose(&decision->path, s);
+    decision->looks += LOOKS_EXACT + vertices_of(decision) / VERTICES_OF_LOOK;
     decision->programs = nearest || pair->rounded
                              ? programs_begin_nearest(pair, false, first, count)
                              : programs_begin(pair, 0, first, count);
@@ -323,6 +334,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
     if (decision->corner < decision->corner_count && decision->outcome != TURN_APART &&
         decision->outcome != TURN_CLEAN) {
         const unsigned k = decision->corner++;
+        decision->looks += LOOKS_DIRECTION + vertices_of(decision) / VERTICES_OF_LOOK;
         const enum turn_outcome outcome = turn_exact_outcome(
             &decision->exact, &decision->corners[k], decision->sign[k], interval.lo, interval.hi);
         if (outcome != TURN_OPEN)
