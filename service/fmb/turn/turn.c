@@ -144,7 +144,8 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
         out->vertex[i] = (uint16_t) i;
     if (out->count > NEAR_VERTICES) {
         double n[FMB_DIM_MAX];
-        turn_body_direction(view, decision->toward, n);
+        const double *last = decision->nearest.direction;
+        turn_body_direction(view, vec3_dot(last, last) > 0 ? last : decision->toward, n);
         out->count = turn_farthest(view, n, f ? -1 : 1, 0, out->vertex);
         /* Far apart in the list: neighbours may be nearly on one line. */
         for (unsigned i = 0; out->count > NEAR_VERTICES && i < NEAR_VERTICES; i++)
@@ -697,6 +698,7 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->looks = out->next_known = 0;
     out->looked = -1;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
+    memset(out->nearest.direction, 0, sizeof out->nearest.direction);
     for (int k = 0; k < TURN_KNOWN; k++)
         out->known[k].at = -1;
     out->in[0] = out->out[0] = INFINITY;

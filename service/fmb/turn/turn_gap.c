@@ -43,6 +43,7 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
     struct turn_direction direction[2];
     const struct turn_piece *next = &gap->next;
     double least = next->least;
+    gap->at.time = gap->path->pair.at * gap->path->pair.frames->duration;
     /* Also with the vertices that come into play within the piece. */
     for (int wide = 0; wide < 2; wide++) {
         const double slack = wide ? next->hi - next->lo : 0;
@@ -57,17 +58,12 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
 }
 
 /* A look that proves no verdict: the frames are as near as the point that was found. */
-static void take_unsure(struct turn_gap *gap, const struct support_nearest *nearest)
+static void take_unsure(struct turn_gap *gap, struct support_nearest *nearest)
 {
     const struct support_pair *pair = &gap->path->pair;
-    const bool known = nearest->outcome == GAP_KNOWN;
-    double n[FMB_DIM_MAX];
-    memcpy(n, known ? nearest->direction : gap->toward, sizeof n);
-    if (!(vec3_dot(n, n) > 0)) {
-        if (gap->next.lo < gap->next.hi)
-            push(gap, gap->next.lo, gap->next.hi, gap->next.least, true);
-        return;
-    }
+    const double *n = nearest->direction;
+    if (nearest->simplex.count == (unsigned) pair->dim + 1)
+        turn_facet_direction(pair, nearest);
     const double outward[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
     struct support_column column;
     gap->at.bounds[0] =
@@ -83,8 +79,6 @@ static void take_known(struct turn_gap *gap)
     double n[FMB_DIM_MAX];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         n[axis] = (gap->swapped ? -1 : 1) * gap->at.direction[axis];
-    gap->at.time = gap->at.has_witness ? gap->path->pair.at * gap->path->pair.frames->duration : 0;
-    memcpy(gap->toward, n, sizeof n);
     take(gap, n);
 }
 
@@ -131,7 +125,6 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;
-    memset(out->toward, 0, sizeof out->toward);
     /* The ends first, where the least gap often is. */
     push(out, 0, 1, -INFINITY, false);
     push(out, 1, 1, -INFINITY, false);
@@ -159,12 +152,9 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_ga
         if (gap->best.bounds[1] - least <= gap->tight) {
             *out = gap->best;
             out->bounds[0] = fmin(least, out->bounds[0]);
-            if (!gap->separated) {
+            if (!gap->separated)
                 out->bounds[1] = fmin(out->bounds[1], 0);
-                out->has_witness = false;
-                out->time = 0;
-                memset(out->witness, 0, sizeof out->witness);
-            }
+            *failed = !(out->bounds[1] - out->bounds[0] <= gap->tight);
             return GAP_KNOWN;
         }
         const struct turn_piece piece = gap->piece[first];

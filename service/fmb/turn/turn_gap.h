@@ -26,7 +26,6 @@ struct turn_gap {
     double tight;    /* the greatest width */
     double farthest; /* a gap that is surely greater need not be known */
     struct fmb_gap best;
-    double toward[FMB_DIM_MAX];
     struct turn_piece next;        /* the one that is looked at */
     struct support_gap_work *work; /* of the pose in its middle, or NULL */
     struct fmb_gap at;             /* its gap */

@@ -73,6 +73,30 @@ void turn_path_pose(struct turn_path *path, double s)
     }
 }
 
+void turn_facet_direction(const struct support_pair *pair, struct support_nearest *nearest)
+{
+    double least = INFINITY;
+    for (int omitted = 0; omitted <= pair->dim; omitted++) {
+        const double *p[FMB_DIM_MAX] = {NULL}, *other = nearest->simplex.vertex[omitted].at;
+        double edge[2][FMB_DIM_MAX] = {{0}, {0, 0, 1}}, n[FMB_DIM_MAX], inward = 0;
+        for (int i = 0; i < pair->dim; i++)
+            p[i] = nearest->simplex.vertex[i < omitted ? i : i + 1].at;
+        for (int i = 0; i + 1 < pair->dim; i++)
+            for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+                edge[i][axis] = p[i + 1][axis] - p[0][axis];
+        vec3_cross(edge[0], edge[1], n);
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            inward += n[axis] * (other[axis] - p[0][axis]);
+        const double length = copysign(sqrt(vec3_dot(n, n)), inward);
+        const double away = fabs(vec3_dot(n, p[0]) / length);
+        if (!(away < least))
+            continue;
+        least = away;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            nearest->direction[axis] = n[axis] / length;
+    }
+}
+
 enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward[FMB_DIM_MAX],
                            struct support_nearest *nearest)
 {
@@ -83,6 +107,8 @@ enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward
     if (vec3_dot(first, first) == 0)
         support_toward(pair, first);
     const enum fmb_verdict cores = support_search_from(pair, first, INFINITY, nearest);
+    if (nearest->simplex.count == (unsigned) pair->dim + 1 && cores == 0)
+        turn_facet_direction(pair, nearest);
     return pair->rounded ? support_round_verdict(pair, cores, nearest) : cores;
 }
 

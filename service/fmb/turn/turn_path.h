@@ -58,6 +58,10 @@ void turn_path_set(const struct frame_pair *frames, struct turn_path *out);
 /* Sets path->pair to the pose at s, a multiple of 2^-53 in [0, 1]. */
 void turn_path_pose(struct turn_path *path, double s);
 
+/* Sets the direction of a search that ended with a simplex of dim + 1 vertices, which contains the
+ * origin up to rounding: that of the facet nearest to the origin, into the simplex. */
+void turn_facet_direction(const struct support_pair *pair, struct support_nearest *nearest);
+
 /* Returns the verdict at s that doubles prove, or 0. In: usable; toward: a direction to begin with,
  * or 0. */
 enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward[FMB_DIM_MAX],
