@@ -152,8 +152,11 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_ga
         if (gap->best.bounds[1] - least <= gap->tight) {
             *out = gap->best;
             out->bounds[0] = fmin(least, out->bounds[0]);
-            if (!gap->separated)
+            if (!gap->separated) {
                 out->bounds[1] = fmin(out->bounds[1], 0);
+                out->has_witness = false;
+                memset(out->witness, 0, sizeof out->witness);
+            }
             *failed = !(out->bounds[1] - out->bounds[0] <= gap->tight);
             return GAP_KNOWN;
         }
