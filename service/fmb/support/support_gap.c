@@ -275,30 +275,50 @@ static double spread_of(const struct support_gap *gap, const struct support_simp
  * covers the rounding to seconds. */
 static const double time_limit = 0.9e-12;
 
-bool support_common_point(const struct support_pair *pair, const struct support_nearest *nearest,
+/* Returns the error of the point relative to the limits of fmb.h, for a simplex whose facets are at
+ * least depth from the origin. share: 1 if the point is that of b, 0 if it is that of a. */
+static double relative_error(const struct support_gap *gap, const struct support_nearest *nearest,
+                             double depth, double *share)
+{
+    const double part = support_distance_above(gap->pair, nearest) / depth;
+    const double spread[2] = {spread_of(gap, &nearest->simplex, 0),
+                              spread_of(gap, &nearest->simplex, 1)};
+    const double allowed = gap->tight - support_witness_error(gap);
+    *share = spread[0] > spread[1];
+    if (!(allowed > 0))
+        return INFINITY;
+    return fmax(part * fmin(spread[0], spread[1]) / allowed,
+                gap->pair->drifts ? part / time_limit : 0);
+}
+
+bool support_common_point(const struct support_pair *pair, const struct support_nearest *found,
                           double point[1 + FMB_DIM_MAX])
 {
+    struct support_nearest nearest = *found;
     struct support_gap gap;
     struct fmb_gap at;
-    double off = 0, share = 0;
+    double share;
     if (!set_gap(pair, &gap))
         return false;
-    const double apart = support_distance_above(pair, nearest);
-    if (pair->rounded && apart <= pair->radius[0]) {
+    if (pair->rounded && support_distance_above(pair, &nearest) <= pair->radius[0]) {
         const double a = 0.5 * pair->frames->a.frame->radius;
         share = a / (a + 0.5 * pair->frames->b.frame->radius);
-    } else {
-        const double part = apart / support_simplex_depth(pair, &nearest->simplex);
-        if (!(part <= time_limit))
+        if (!(support_witness_error(&gap) <= gap.tight))
             return false;
-        const double spread[2] = {spread_of(&gap, &nearest->simplex, 0),
-                                  spread_of(&gap, &nearest->simplex, 1)};
-        share = spread[0] > spread[1];
-        off = part * fmin(spread[0], spread[1]);
+    } else {
+        double depth = support_simplex_depth(pair, &nearest.simplex), error;
+        if (depth == 0)
+            return false;
+        error = relative_error(&gap, &nearest, depth, &share);
+        if (error > 1 && error < INFINITY) {
+            support_widen(pair, 2 * depth * error, &nearest);
+            depth = support_simplex_depth(pair, &nearest.simplex);
+            error = relative_error(&gap, &nearest, depth, &share);
+        }
+        if (!(error <= 1))
+            return false;
     }
-    if (!(off + support_witness_error(&gap) <= gap.tight))
-        return false;
-    support_witness(&gap, nearest, &at);
+    support_witness(&gap, &nearest, &at);
     point[0] = at.time + 0.0;
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         point[1 + axis] =

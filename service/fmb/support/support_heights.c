@@ -274,6 +274,56 @@ bool support_box(const struct support_pair *pair, const struct support_simplex *
     return true;
 }
 
+/* ---- A simplex around the origin ---- */
+
+enum { WIDENINGS_MAX = 8 };
+
+/* The coordinate of a point that belongs to vertex i of the basis is linear in the point. Its
+ * gradient is orthogonal to the facet without that vertex, and points inward. */
+static void set_gradient(const struct program *program, int i, double out[FMB_DIM_MAX])
+{
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        out[axis] = i > 0 ? program->part[i - 1][axis] : 0;
+        for (int k = 0; i == 0 && k < program->pair->dim; k++)
+            out[axis] -= program->part[k][axis];
+    }
+}
+
+/* The vertex of D that is farthest beyond the facet nearest to the origin enters the simplex, until
+ * no facet is near. */
+void support_widen(const struct support_pair *pair, double depth, struct support_nearest *nearest)
+{
+    const int dim = pair->dim;
+    double widest = 0;
+    struct program program = {.axis = -1};
+    begin(pair, &nearest->simplex, &program);
+    for (int step = 0; step < WIDENINGS_MAX && widest < depth; step++) {
+        double least = INFINITY, coordinate[FMB_DIM_MAX + 1], inward[FMB_DIM_MAX];
+        struct support_vertex next;
+        set_plane(&program);
+        for (int i = 0; i <= dim; i++) {
+            double gradient[FMB_DIM_MAX];
+            set_gradient(&program, i, gradient);
+            coordinate[i] = (i == 0) - vec3_dot(gradient, program.basis[0].vertex.at);
+            const double distance = coordinate[i] / sqrt(vec3_dot(gradient, gradient));
+            if (distance < least) {
+                least = distance;
+                memcpy(inward, gradient, sizeof inward);
+            }
+        }
+        if (least > widest) {
+            widest = least;
+            for (int i = 0; i <= dim; i++) {
+                nearest->simplex.vertex[i] = program.basis[i].vertex;
+                nearest->weight[i] = coordinate[i];
+            }
+        }
+        support_lowest(pair, inward, &next);
+        if (!pivot(&program, &next))
+            break;
+    }
+}
+
 /* ---- Guesses ---- */
 
 bool support_guess_begin(const struct support_pair *pair, struct support_guess *out)
