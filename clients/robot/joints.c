@@ -29,6 +29,13 @@ static bool is_chosen(const struct joints *joints, size_t j)
     return joints->given[j] || (joint->mimic_name && joints->given[joint->mimic]);
 }
 
+/* Whether a value this far outside the limits of joint j is refused. Limits bind the joints that a
+ * controller moves: the value of a mimic joint is reported, as MoveIt accepts it. */
+static bool is_refused(const struct joints *joints, size_t j, double by)
+{
+    return isinf(by) || (joints->given[j] && by > joints->slack);
+}
+
 /* Records the value of joint j if it is outside the limits. */
 static void check_value(struct joints *joints, size_t j, const char *path, unsigned long line)
 {
@@ -45,7 +52,7 @@ static void check_value(struct joints *joints, size_t j, const char *path, unsig
     if (!(found.by > 0) || (!isinf(found.by) && !is_chosen(joints, j)))
         return;
     joints->outside_count++;
-    joints->refused = joints->refused || found.by > joints->slack || isinf(found.by);
+    joints->refused = joints->refused || is_refused(joints, j, found.by);
     if (found.by > joints->outside[j].by)
         joints->outside[j] = found;
 }
@@ -73,7 +80,7 @@ bool joints_check(const struct joints *joints)
         const struct robot_joint *joint = &joints->robot->joints[j];
         const struct joint_report *at = &joints->outside[j];
         const bool turns = joint->type != ROBOT_PRISMATIC;
-        if (!(at->by > joints->slack) && !isinf(at->by))
+        if (!is_refused(joints, j, at->by))
             continue;
         if (turns && fabs(at->value) > TURN_RADIANS_MAX)
             snprintf(what, sizeof what, "is beyond %.0f radians", TURN_RADIANS_MAX);
@@ -114,9 +121,12 @@ void joints_describe(const struct joints *joints, const char *before, FILE *out)
     }
     if (joints->outside_count > 0) {
         separate(&before, out);
-        fprintf(out, "values outside limits, within --limit-slack %s: %zu, the farthest %s of '%s'",
-                number_or_inf(joints->slack, slack), joints->outside_count,
-                number_or_inf(farthest->value, value), robot->joints[farthest->joint].name->name);
+        fprintf(
+            out,
+            "values outside limits, within --limit-slack %s or of mimic joints: %zu, the farthest "
+            "%s of '%s'",
+            number_or_inf(joints->slack, slack), joints->outside_count,
+            number_or_inf(farthest->value, value), robot->joints[farthest->joint].name->name);
         if (farthest->line > 0)
             fprintf(out, " in line %lu", farthest->line);
     }
