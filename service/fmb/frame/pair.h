@@ -31,10 +31,30 @@ static inline bool frame_is_simplex(const struct fmb_frame *frame)
     return frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
 }
 
-/* Returns whether the vertices of both frames decide the pair (support_pair.h). */
+/* Returns the number of vertices of a frame that is not a hull. */
+static inline unsigned frame_vertex_count(const struct fmb_frame *frame)
+{
+    return frame_is_simplex(frame) ? (unsigned) frame->count + 1 : 1U << frame->count;
+}
+
+/* Returns whether vertex k of such a frame, which is its origin plus some components, has component
+ * i. */
+static inline bool frame_vertex_has(const struct fmb_frame *frame, unsigned k, int i)
+{
+    return frame_is_simplex(frame) ? k == (unsigned) i + 1 : k >> i & 1;
+}
+
+/* Returns whether a frame is decided by its vertices (support_pair.h), and its slabs, which are
+ * those of a cuboid that contains it, only reject. */
+static inline bool frame_by_vertices(const struct fmb_frame *frame)
+{
+    return frame->shape == FMB_HULL || frame->radius != 0;
+}
+
+/* Returns whether the vertices of both frames decide the pair. */
 static inline bool support_takes(const struct fmb_frame *a, const struct fmb_frame *b)
 {
-    return a->shape == FMB_HULL || b->shape == FMB_HULL || a->radius != 0 || b->radius != 0;
+    return frame_by_vertices(a) || frame_by_vertices(b);
 }
 
 /* Returns whether the velocity is not 0. */

@@ -62,7 +62,7 @@ unsigned long long prepared_summary_of(const struct fmb_frame *frame)
     unsigned kind = PREPARED_VALID;
     kind |= frame->shape == FMB_TETRAHEDRON ? PREPARED_TETRAHEDRON : 0;
     kind |= frame->shape == FMB_FACE ? PREPARED_FACE : 0;
-    kind |= frame->shape == FMB_HULL || frame->radius != 0 ? PREPARED_VERTICES : 0;
+    kind |= frame_by_vertices(frame) ? PREPARED_VERTICES : 0;
     kind |= frame->dim == 3 ? PREPARED_3D : 0;
     kind |= frame->in_range ? PREPARED_USABLE : 0;
     kind |= plain ? PREPARED_PLAIN : 0;

@@ -123,8 +123,8 @@ static void turn_vector(const struct support_turn *turn, const mpz_t factor, mpz
 static void set_small(struct support_side *side, long unit)
 {
     const struct fmb_frame *frame = side->frame;
-    const bool simplex = frame_is_simplex(frame), box = frame->shape == FMB_BOX;
-    const unsigned count = simplex ? (unsigned) frame->count + 1 : 1U << frame->count;
+    const bool box = frame->shape == FMB_BOX;
+    const unsigned count = frame_vertex_count(frame);
     const double *origin = box ? frame->centre : frame->origin;
     mpz_t component;
     mpz_init(component);
@@ -137,7 +137,7 @@ static void set_small(struct support_side *side, long unit)
                 mpz_fdiv_q_2exp(component, component, 1); /* exact: it is even */
             for (unsigned k = 0; k < count; k++) {
                 mpz_ptr x = side->small[k][axis];
-                if (simplex ? k == (unsigned) i + 1 : k >> i & 1)
+                if (frame_vertex_has(frame, k, i))
                     mpz_add(x, x, component);
                 else if (box)
                     mpz_sub(x, x, component);

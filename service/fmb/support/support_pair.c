@@ -14,16 +14,15 @@ static const double unit_roundoff = 0x1p-53;
  * a number of magnitude at most |o| + sum |c_i|. */
 static void set_small(const struct fmb_frame *frame, struct support_view *out)
 {
-    const bool simplex = frame_is_simplex(frame);
-    const unsigned count = simplex ? 1u + (unsigned) frame->count : 1u << frame->count;
+    const unsigned count = frame_vertex_count(frame);
     double sum = 0;
     for (int axis = 0; axis < frame->dim; axis++) {
         double *to = out->small + axis * SUPPORT_SMALL;
         sum += fabs(frame->origin[axis]);
         for (unsigned k = 0; k < SUPPORT_SMALL; k++) {
             to[k] = frame->origin[axis];
-            for (unsigned i = 0; i < (unsigned) frame->count && k < count; i++)
-                if (simplex ? k == i + 1 : k >> i & 1)
+            for (int i = 0; i < frame->count && k < count; i++)
+                if (frame_vertex_has(frame, k, i))
                     to[k] += frame->component[i][axis];
         }
         for (int i = 0; i < frame->count; i++)
@@ -35,7 +34,8 @@ static void set_small(const struct fmb_frame *frame, struct support_view *out)
         double all = 0;
         for (int i = 0; i < frame->count; i++)
             all += frame->component[i][axis];
-        out->centre[axis] = frame->origin[axis] + all / (simplex ? frame->count + 1 : 2);
+        out->centre[axis] =
+            frame->origin[axis] + all / (frame_is_simplex(frame) ? frame->count + 1 : 2);
     }
 }
 
