@@ -605,7 +605,7 @@ static void flat(struct draw *draw, const struct family *family, const struct ce
         solid->orientation[1] = solid->orientation[2] = 0;
         solid->end_orientation[1] = solid->end_orientation[2] = 0;
         if (solid->ending)
-            solid->orientation[0] = solid->end_orientation[0] = 3;
+            solid->orientation[0] = solid->end_orientation[0] = 4;
     }
     if (out->b.ending && draw_coin(draw))
         out->b.origin[2] = draw_int(draw, -1, 1), out->b.end_origin[2] = draw_int(draw, -1, 1);
@@ -635,7 +635,7 @@ static void straight(struct draw *draw, const struct family *family, const struc
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
         memcpy(solid->end_orientation, solid->orientation, sizeof solid->orientation);
-        if (draw_coin(draw))
+        if (draw_int(draw, 0, 3) == 0)
             for (int i = 0; i < 4; i++)
                 solid->end_orientation[i] *= -2;
     }

@@ -114,25 +114,86 @@ static double size_of(const struct pair *pair, bool upper)
     return reach;
 }
 
-/* The least gap of the frames at a time, in doubles, if they are apart; otherwise 0. */
-static double distance_at(const struct pair *moment)
+/* The sign of the gap of the bodies at a time minus the bound, but for 1e-14 of it where they are
+ * apart. */
+static int compare_gap(const struct pair *moment, double bound)
 {
-    double least = HUGE_VAL;
-    for (unsigned i = 0; i < moment->a.body->frame_count; i++)
-        for (unsigned j = 0; j < moment->b.body->frame_count; j++) {
-            struct world world;
-            mpq_t square;
-            mpq_init(square);
-            world_init(&world, moment, i, j);
-            difference_nearest(&world.difference, square, NULL);
+    int least = 1;
+    mpq_t square, limit;
+    mpq_inits(square, limit, NULL);
+    for (unsigned k = 0; k < moment->a.body->frame_count * moment->b.body->frame_count; k++) {
+        struct world world;
+        world_init(&world, moment, k / moment->b.body->frame_count,
+                   k % moment->b.body->frame_count);
+        difference_nearest(&world.difference, square, NULL);
+        world_length(&world, fmax(-DBL_MAX, fmin(bound, DBL_MAX)), limit);
+        mpq_add(limit, limit, world.radius);
+        int sign;
+        if (mpq_sgn(square) == 0) {
+            sign = difference_compare_facets(&world.difference, limit);
+        } else {
             mpq_div(square, square, world.scale);
             mpq_div(square, square, world.scale);
-            mpq_div(world.radius, world.radius, world.scale);
-            least = fmin(least, sqrt(mpq_get_d(square)) - mpq_get_d(world.radius));
-            world_clear(&world);
-            mpq_clear(square);
+            mpq_div(limit, limit, world.scale);
+            const double distance = sqrt(mpq_get_d(square)), other = mpq_get_d(limit);
+            const double slack = 1e-14 * (distance + fabs(other));
+            sign = (distance > other + slack) - (distance < other - slack);
         }
-    return fmax(least, 0);
+        least = sign < least ? sign : least;
+        world_clear(&world);
+    }
+    mpq_clears(square, limit, NULL);
+    return least;
+}
+
+static double gap_of_moment(const struct trial *trial, double share)
+{
+    const struct pair *pair = &trial->pair[0];
+    struct fmb_placement at[2];
+    struct fmb_answer answer;
+    fmb_pose_at(&pair->a, pair->duration, share * pair->duration, &at[0]);
+    fmb_pose_at(&pair->b, pair->duration, share * pair->duration, &at[1]);
+    return fmb_decide(fmb_method_default(), &at[0], &at[1], 0, FMB_WANT_GAP, &answer) == FMB_OK
+               ? answer.gap.bounds[0]
+               : HUGE_VAL;
+}
+
+/* The time of the least of five gaps, again and again closer about it. */
+static double close_in(const struct trial *trial, double from, double to)
+{
+    double found = from;
+    while (to - from > 0x1p-46) {
+        const double step = (to - from) / 4, start = from;
+        double least = HUGE_VAL;
+        for (int i = 0; i <= 4; i++) {
+            const double gap = gap_of_moment(trial, start + i * step);
+            found = gap < least ? start + i * step : found;
+            least = fmin(least, gap);
+        }
+        from = fmax(start, found - step);
+        to = fmin(to, found + step);
+    }
+    return found;
+}
+
+/* Where to look: the time of the least gap, by static answers of the engine at rounded poses. It
+ * need not be right. */
+static double seek_least(const struct trial *trial)
+{
+    enum { STEPS = 64 };
+    double gap[STEPS + 1], best = 0, least = HUGE_VAL;
+    for (int i = 0; i <= STEPS; i++)
+        gap[i] = gap_of_moment(trial, (double) i / STEPS);
+    for (int i = 0; i <= STEPS; i++) {
+        const double before = i ? i - 1 : 0, after = i < STEPS ? i + 1 : STEPS;
+        if (gap[i] > gap[(int) before] || gap[i] > gap[(int) after])
+            continue;
+        const double found = close_in(trial, before / STEPS, after / STEPS);
+        const double one = gap_of_moment(trial, found);
+        best = one < least ? found : best;
+        least = fmin(least, one);
+    }
+    return best;
 }
 
 /* Whether both bodies have, within the limit, that point at its time. */
@@ -219,9 +280,9 @@ static const char *gap_fault(const struct pair *pair, enum fmb_verdict verdict,
     mpq_init(at);
     share_of(gap->time, pair->duration, at);
     moment.at = at;
-    if (verdict != FMB_TOUCHING && !gap_check_lower(&moment, gap->frame[0], gap->frame[1], gap))
+    if (verdict == FMB_SEPARATED && !gap_check_lower(&moment, gap->frame[0], gap->frame[1], gap))
         fault = "gap: the direction does not prove the lower bound at its time";
-    else if (verdict != FMB_TOUCHING && (gap->has_witness || verdict == FMB_SEPARATED) &&
+    else if (verdict == FMB_SEPARATED &&
              !gap_check_upper(&moment, gap->frame[0], gap->frame[1], gap))
         fault = "gap: the upper bound is not proven at its time";
     mpq_clear(at);
@@ -250,9 +311,12 @@ static const char *box_fault(const struct pair *moment, const double box[2][FMB_
 }
 
 /* Holds the answer against the static oracle at some times. */
-static const char *look(struct draw *draw, const struct pair *pair, const struct fmb_answer *answer,
-                        struct turning_truth *truth)
+static const char *look(struct draw *draw, const struct trial *trial,
+                        const struct fmb_answer *answer, struct turning_truth *truth)
 {
+    const struct pair *pair = &trial->pair[0];
+    const bool deep = answer->has_gap && answer->verdict == FMB_OVERLAPPING;
+    const double least = answer->has_gap ? seek_least(trial) : 0;
     struct pair moment = *pair;
     const bool large = !truth->whole && pair->a.body->one.vertex_count > 20;
     const char *fault = NULL;
@@ -271,6 +335,8 @@ static const char *look(struct draw *draw, const struct pair *pair, const struct
                      pair->duration, at);
         else if (i == 2 && answer->has_gap)
             share_of(answer->gap.time, pair->duration, at);
+        else if (i == 5)
+            mpq_set_d(at, least);
         struct turning_truth one;
         turning_init(&one);
         const enum fmb_verdict verdict = turning_look(pair, at, truth->whole ? &one : truth);
@@ -281,11 +347,12 @@ static const char *look(struct draw *draw, const struct pair *pair, const struct
             fault = "the oracles contradict each other";
         if (verdict > answer->verdict)
             fault = "a stronger verdict at some time";
-        if (answer->has_gap && verdict == FMB_SEPARATED && !fault) {
-            const double distance = distance_at(&moment);
-            if (distance < answer->gap.bounds[0] * (1 - 1e-14))
-                fault = "a smaller gap at some time";
-        }
+        if (answer->has_gap && !fault && !(large && verdict == FMB_OVERLAPPING) &&
+            compare_gap(&moment, answer->gap.bounds[0]) < 0 && answer->verdict != FMB_TOUCHING)
+            fault = "a smaller gap at some time";
+        if (deep && i == 5 && !large && !fault &&
+            compare_gap(&moment, answer->gap.bounds[1] + 1e-12 * size_of(pair, true)) > 0)
+            fault = "gap: they are nowhere as deep";
         if (answer->has_box && verdict != FMB_SEPARATED && !large && !fault)
             fault = box_fault(&moment, answer->box);
     }
@@ -301,15 +368,16 @@ static bool has_nan(const double *number, int count)
     return has;
 }
 
-static const char *answer_fault(struct draw *draw, struct count *count, const struct pair *pair,
+static const char *answer_fault(struct draw *draw, struct count *count, const struct trial *trial,
                                 const struct fmb_answer *answer, struct turning_truth *truth)
 {
+    const struct pair *const pair = &trial->pair[0];
     const struct fmb_gap *const gap = &answer->gap;
     if (has_nan(answer->contact, 2) || has_nan(answer->point, 1 + FMB_DIM_MAX) ||
         has_nan(gap->bounds, 2) || has_nan(gap->direction, FMB_DIM_MAX) ||
         has_nan(gap->witness[0], 2 * FMB_DIM_MAX) || isnan(gap->time))
         return "what is not a number";
-    const char *fault = look(draw, pair, answer, truth);
+    const char *fault = look(draw, trial, answer, truth);
     if (fault)
         return fault;
     if (answer->verdict < truth->least)
@@ -342,19 +410,6 @@ static struct reply ask(const struct question *question)
     const struct reply reply = trial_decide(&trial, fmb_method_default(), 0, FMB_WANT_TIMES);
     trial_end(&trial);
     return reply;
-}
-
-static void swap_poses(struct solid *solid)
-{
-    double was[4];
-    if (!solid->ending)
-        return;
-    memcpy(was, solid->origin, sizeof solid->origin);
-    memcpy(solid->origin, solid->end_origin, sizeof solid->origin);
-    memcpy(solid->end_origin, was, sizeof solid->origin);
-    memcpy(was, solid->orientation, sizeof was);
-    memcpy(solid->orientation, solid->end_orientation, sizeof was);
-    memcpy(solid->end_orientation, was, sizeof was);
 }
 
 /* Half a turn of the world about its first axis, in 2D about the origin: nothing rounds. */
@@ -407,12 +462,27 @@ static bool take_half(int which, struct solid *solid)
     return exact;
 }
 
+/* Gives an end that does not turn as a velocity. Returns whether it turns not, and nothing rounds.
+ */
+static bool take_velocity(double duration, struct solid *solid)
+{
+    bool exact = true;
+    for (int i = 0; i < solid->orientation_count && solid->ending; i++)
+        exact = exact && solid->orientation[i] == solid->end_orientation[i];
+    for (int axis = 0; axis < solid->dim && solid->ending; axis++)
+        exact = halve(solid->end_origin[axis], -solid->origin[axis], 1 / duration,
+                      &solid->velocity[axis]) &&
+                1 / (1 / duration) == duration && exact;
+    solid->moving = solid->ending;
+    solid->ending = false;
+    return exact;
+}
+
 static const char *other_ways_fault(const struct question *question,
                                     const struct fmb_answer *answer)
 {
     const double T = question->duration, close = 2e-12 * T + 0x1p-1070;
-    struct question other = *question;
-    swap_poses(&other.a), swap_poses(&other.b);
+    struct question other = question_reversed(question);
     struct reply reply = ask(&other);
     if (reply.status == FMB_OK && reply.answer.verdict != answer->verdict)
         return "another verdict with time reversed";
@@ -425,6 +495,15 @@ static const char *other_ways_fault(const struct question *question,
     reply = ask(&other);
     if (reply.status == FMB_OK && reply.answer.verdict != answer->verdict)
         return "another verdict after half a turn of the world";
+    other = *question;
+    if (take_velocity(T, &other.a) && take_velocity(T, &other.b)) {
+        reply = ask(&other);
+        if (reply.status != FMB_OK || reply.answer.verdict != answer->verdict ||
+            (answer->has_contact &&
+             !(fabs(reply.answer.contact[0] - answer->contact[0]) <= close / 2 &&
+               fabs(reply.answer.contact[1] - answer->contact[1]) <= close / 2)))
+            return "another verdict or contact of the same velocity";
+    }
     enum fmb_verdict strongest = FMB_SEPARATED;
     bool decided = T / 2 * 2 == T;
     for (int half = 0; half < 2 && decided; half++) {
@@ -487,12 +566,12 @@ static void judge(struct count *count, struct draw *draw, const struct question 
                       sizeof verdict.answer.contact) == 0))
         fault = "another verdict or contact with gap, box and point";
     else if (reply[0].status == FMB_OK &&
-             !(fault = answer_fault(draw, count, &trial.pair[0], &reply[0].answer, &truth)))
+             !(fault = answer_fault(draw, count, &trial, &reply[0].answer, &truth)))
         fault = other_ways_fault(question, &reply[0].answer);
     else if (reply[0].status != FMB_OK) {
         count->undecided++;
         const struct fmb_answer any = {.verdict = FMB_OVERLAPPING};
-        fault = look(draw, &trial.pair[0], &any, &truth);
+        fault = look(draw, &trial, &any, &truth);
     }
     if (fault && count->wrong++ == 0) {
         count->question = *question;

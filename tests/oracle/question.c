@@ -206,6 +206,25 @@ struct question question_swapped(const struct question *question)
     return swapped;
 }
 
+static void reverse(struct solid *solid)
+{
+    const struct solid was = *solid;
+    if (!solid->ending)
+        return;
+    memcpy(solid->origin, was.end_origin, sizeof was.origin);
+    memcpy(solid->end_origin, was.origin, sizeof was.origin);
+    memcpy(solid->orientation, was.end_orientation, sizeof was.orientation);
+    memcpy(solid->end_orientation, was.orientation, sizeof was.orientation);
+}
+
+struct question question_reversed(const struct question *question)
+{
+    struct question reversed = *question;
+    reverse(&reversed.a);
+    reverse(&reversed.b);
+    return reversed;
+}
+
 enum fmb_shape question_draw_shape(struct draw *draw, int dim)
 {
     return (enum fmb_shape) draw_int(draw, FMB_CUBOID, dim == 3 ? FMB_FACE : FMB_TETRAHEDRON);

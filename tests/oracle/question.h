@@ -90,6 +90,9 @@ bool question_is_symmetric(const struct question *question);
 /* The same question with a and b in each other's place. */
 struct question question_swapped(const struct question *question);
 
+/* The same with time reversed, of solids that are at rest or have ends. */
+struct question question_reversed(const struct question *question);
+
 /* Any shape of the dimension but a box and a hull. */
 enum fmb_shape question_draw_shape(struct draw *draw, int dim);
 

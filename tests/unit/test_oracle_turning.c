@@ -137,22 +137,6 @@ static void known_cases(void **state)
         }
 }
 
-static struct question reversed(const struct question *question)
-{
-    struct question out = *question;
-    struct solid *solid[2] = {&out.a, &out.b};
-    const struct solid *from[2] = {&question->a, &question->b};
-    for (int side = 0; side < 2; side++) {
-        if (!solid[side]->ending)
-            continue;
-        memcpy(solid[side]->origin, from[side]->end_origin, sizeof out.a.origin);
-        memcpy(solid[side]->end_origin, from[side]->origin, sizeof out.a.origin);
-        memcpy(solid[side]->orientation, from[side]->end_orientation, sizeof out.a.orientation);
-        memcpy(solid[side]->end_orientation, from[side]->orientation, sizeof out.a.orientation);
-    }
-    return out;
-}
-
 static void decide_trial(const struct question *question, struct turning_truth *truth)
 {
     struct trial trial;
@@ -185,7 +169,7 @@ static void time_reversed(void **state)
             struct question question, back;
             struct turning_truth truth, other;
             family_draw(family, &cell, &draw, &question);
-            back = reversed(&question);
+            back = question_reversed(&question);
             decide_trial(&question, &truth);
             decide_trial(&back, &other);
             if (truth.least != other.least || truth.most != other.most ||
