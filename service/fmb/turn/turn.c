@@ -298,7 +298,7 @@ static void give_up(struct turn_decision *decision)
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = 0.5 * (interval.lo + interval.hi), width = interval.hi - interval.lo;
-    struct turn_direction direction[2];
+    struct turn_direction direction[3];
     const enum fmb_verdict verdict = verdict_at(decision, middle);
     const bool sure = decision->looked == middle && decision->sure;
     if (verdict == 0)
@@ -423,7 +423,7 @@ static double approach_contact(struct turn_decision *decision, double apart)
         decision->in[late] = apart;
     for (int k = 0; k < DIRECTIONS_MAX && verdict == FMB_SEPARATED; k++) {
         const double in = decision->in[late];
-        struct turn_direction direction[2];
+        struct turn_direction direction[3];
         turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         const double root = root_of(&decision->path, direction, apart, in);
         const double before = floor((root - onward) * 0x1p50) * 0x1p-50;
@@ -519,7 +519,7 @@ static void set_box(const struct turn_path *path, double first, double last,
 static void set_touching_gap(struct turn_decision *decision, double s, struct fmb_gap *out)
 {
     struct turn_path *path = &decision->path;
-    struct turn_direction direction[3];
+    struct turn_direction direction[4];
     double most = -INFINITY;
     memset(out, 0, sizeof *out);
     out->direction[0] = 1;

@@ -40,16 +40,25 @@ static void push(struct turn_gap *gap, double lo, double hi, double least, bool 
  * direction n, in the order of the path. In: the pose of the path is that in the middle. */
 static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
 {
-    struct turn_direction direction[2];
+    struct turn_direction direction[3];
     const struct turn_piece *next = &gap->next;
+    const double enough = fmin(gap->at.bounds[1], gap->best.bounds[1]) - gap->tight;
     double least = next->least;
     gap->at.time = gap->path->pair.at * gap->path->pair.frames->duration;
-    /* Also with the vertices that come into play within the piece. */
-    for (int wide = 0; wide < 2; wide++) {
-        const double slack = wide ? next->hi - next->lo : 0;
-        const unsigned count = turn_directions(gap->path, n, slack, direction);
-        for (unsigned k = 0; k < count && slack < wide_piece; k++)
-            least = fmax(least, turn_distance(gap->path, &direction[k], next->lo, next->hi));
+    /* Also with the vertices that come into play within the piece, and the last good direction. */
+    for (int k = 0; k < 3 && least < enough; k++) {
+        const double slack = k == 1 ? next->hi - next->lo : 0;
+        const unsigned count =
+            k == 2 ? gap->has_good : turn_directions(gap->path, n, slack, direction);
+        for (unsigned i = 0; i < count && slack < wide_piece && least < enough; i++) {
+            const struct turn_direction *of = k == 2 ? &gap->good : &direction[i];
+            const double bound = turn_distance(gap->path, of, next->lo, next->hi);
+            if (bound > enough && k < 2) {
+                gap->good = *of;
+                gap->has_good = true;
+            }
+            least = fmax(least, bound);
+        }
     }
     if (gap->at.bounds[1] < gap->best.bounds[1])
         gap->best = gap->at;
@@ -122,6 +131,7 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->farthest = farthest;
     out->count = out->looks = 0;
     out->work = NULL;
+    out->has_good = false;
     out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;

@@ -26,6 +26,8 @@ struct turn_gap {
     double tight;    /* the greatest width */
     double farthest; /* a gap that is surely greater need not be known */
     struct fmb_gap best;
+    struct turn_direction good; /* one that bounded the gap over a piece tightly */
+    bool has_good;
     struct turn_piece next;        /* the one that is looked at */
     struct support_gap_work *work; /* of the pose in its middle, or NULL */
     struct fmb_gap at;             /* its gap */

@@ -171,7 +171,7 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
  * there. Two edges that are not parallel: their product. Two parallel edges: either frame may do.
  */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
-                         double slack, struct turn_direction out[2])
+                         double slack, struct turn_direction out[3])
 {
     const struct support_view *view = path->pair.view;
     uint16_t list[2][FMB_HULL_VERTICES_MAX];
@@ -192,8 +192,9 @@ unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_
         if (vec3_dot(n, n) > 0x1p-20 * vec3_dot(e, e) * vec3_dot(f, f)) {
             for (int axis = 0; axis < FMB_DIM_MAX && vec3_dot(n, nearest) < 0; axis++)
                 edges.m[0][axis] = -edges.m[0][axis];
+            out[2] = out[0];
             out[0] = edges;
-            return 1;
+            return 3;
         }
     }
     if (count[1] > count[0])

@@ -88,10 +88,10 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
 void turn_body_direction(const struct support_view *view, const double n[FMB_DIM_MAX],
                          double out[FMB_DIM_MAX]);
 
-/* Sets up to two directions near the nearest direction of a look at the present pose. slack: of the
- * vertices that count as supporting, relative to the reach. Returns their number. */
+/* Sets up to three directions near the nearest direction of a look at the present pose. slack: of
+ * the vertices that count as supporting, relative to the reach. Returns their number. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
-                         double slack, struct turn_direction out[2]);
+                         double slack, struct turn_direction out[3]);
 
 /* Returns the least n . (b - a) / |n| at s, rounded, less the radii; sets the pose. */
 double turn_along(struct turn_path *path, const struct turn_direction *direction, double s);
