@@ -66,17 +66,34 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
         push(gap, next->lo, next->hi, least, true);
 }
 
-/* A look that proves no verdict: the frames are as near as the point that was found. */
+/* Returns the lower bound of the gap at the present pose that a direction of length 1 proves. */
+static double proved_by(const struct support_pair *pair, const double n[FMB_DIM_MAX])
+{
+    const double outward[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
+    struct support_column column;
+    return -support_farthest(pair, outward, &column) - (1.25 * pair->error + pair->radius[1]);
+}
+
+/* A look that proves no verdict: the frames are as near as the point that was found. Its direction,
+ * of a small difference of large numbers, may be poor: or else the last good one. */
 static void take_unsure(struct turn_gap *gap, struct support_nearest *nearest)
 {
     const struct support_pair *pair = &gap->path->pair;
-    const double *n = nearest->direction;
+    double *n = nearest->direction, good[FMB_DIM_MAX];
     if (nearest->simplex.count == (unsigned) pair->dim + 1)
         turn_facet_direction(pair, nearest);
-    const double outward[FMB_DIM_MAX] = {-n[0], -n[1], -n[2]};
-    struct support_column column;
-    gap->at.bounds[0] =
-        -support_farthest(pair, outward, &column) - (1.25 * pair->error + pair->radius[1]);
+    gap->at.bounds[0] = proved_by(pair, n);
+    if (gap->has_good) {
+        turn_normal(gap->path, &gap->good, good);
+        const double length = sqrt(vec3_dot(good, good));
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            good[axis] /= length;
+        const double other = proved_by(pair, good);
+        if (other > gap->at.bounds[0]) {
+            memcpy(n, good, sizeof good);
+            gap->at.bounds[0] = other;
+        }
+    }
     gap->at.bounds[1] = support_distance_above(pair, nearest) - pair->radius[0];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         gap->at.direction[axis] = (gap->swapped ? -1 : 1) * n[axis] + 0.0;
