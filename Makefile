@@ -467,7 +467,7 @@ install: all
 			sed -n 's|^\(/[^:]*\):.*|\1|p' | paste -sd:)) \
 		$(call needs,PKG_CONFIG_PATH,$(LIBDIR)/pkgconfig,$$PKG_CONFIG_PATH:$$(pkg-config --variable pc_path pkg-config)) \
 		$(call needs,CMAKE_PREFIX_PATH,$(PREFIX),/usr:/usr/local:$$CMAKE_PREFIX_PATH) \
-		$(call needs,PYTHONPATH,$(PYTHONDIR),$$($(python) -c 'import sys; print(":".join(sys.path))')) } | \
+		$(call needs,PYTHONPATH,$(PYTHONDIR),$$($(python) -c 'import sys; print(":".join(sys.path))' 2> /dev/null)) } | \
 		sed '1i to find what is installed:')
 
 install-strip: strip_option := -s
