@@ -71,7 +71,8 @@ quiet := $(if $(V),,@)
 
 # ---- Flags ----
 
-# What names the folder of the build for debuggers is relative, also where the linker optimises.
+# What names the folder of the build for debuggers is relative, also where the linker optimises, and where the
+# assembler adds it to objects that the linker may optimise ('whole' below).
 mode_link_release := -ffile-prefix-map='$(subst ','\'',$(CURDIR))'=.
 mode_flags_release := -O2 -g1 -DNDEBUG $(mode_link_release)
 mode_flags_debug := -O0 -g3
@@ -132,7 +133,7 @@ $(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/exchange/%.o $(
 ifneq ($(filter gcc%,$(compiler)),)
 link_whole := -O3 $(link_user) -flto=auto
 $(O)/service/%.o $(O)/msgs/%.o $(O)/clients/log/%.o $(O)/clients/exchange/%.o $(O)/clients/replay/%.o: \
-	whole := -flto=auto -ffat-lto-objects
+	whole := -flto=auto -ffat-lto-objects -Xassembler --debug-prefix-map='$(subst ','\'',$(CURDIR))'=.
 $(O)/service/fmb/%.o: whole := -fno-lto
 # Vectors of three doubles that are stored one by one and loaded in pairs would stall.
 $(O)/service/fmb/gap/%.o: flags += -fno-tree-slp-vectorize
