@@ -151,8 +151,8 @@ static double gap_of_moment(const struct trial *trial, double share)
     const struct pair *pair = &trial->pair[0];
     struct fmb_placement at[2];
     struct fmb_answer answer;
-    fmb_pose_at(&pair->a, pair->duration, share * pair->duration, &at[0]);
-    fmb_pose_at(&pair->b, pair->duration, share * pair->duration, &at[1]);
+    fmb_pose_at(&pair->a, pair->duration, fmin(share, 1) * pair->duration, &at[0]);
+    fmb_pose_at(&pair->b, pair->duration, fmin(share, 1) * pair->duration, &at[1]);
     return fmb_decide(fmb_method_default(), &at[0], &at[1], 0, FMB_WANT_GAP, &answer) == FMB_OK
                ? answer.gap.bounds[0]
                : HUGE_VAL;
@@ -162,7 +162,7 @@ static double gap_of_moment(const struct trial *trial, double share)
 static double close_in(const struct trial *trial, double from, double to)
 {
     double found = from;
-    while (to - from > 0x1p-46) {
+    while (to - from > 0x1p-48) {
         const double step = (to - from) / 4, start = from;
         double least = HUGE_VAL;
         for (int i = 0; i <= 4; i++) {
@@ -176,19 +176,20 @@ static double close_in(const struct trial *trial, double from, double to)
     return found;
 }
 
-/* Where to look: the time of the least gap, by static answers of the engine at rounded poses. It
- * need not be right. */
-static double seek_least(const struct trial *trial)
+/* Where to look: the time of the least gap within a part of the window, by static answers of the
+ * engine at rounded poses. It need not be right. */
+static double seek_least(const struct trial *trial, double from, double to)
 {
-    enum { STEPS = 64 };
+    enum { STEPS = 128 };
     double gap[STEPS + 1], best = 0, least = HUGE_VAL;
+    const double step = (to - from) / STEPS;
     for (int i = 0; i <= STEPS; i++)
-        gap[i] = gap_of_moment(trial, (double) i / STEPS);
+        gap[i] = gap_of_moment(trial, from + i * step);
     for (int i = 0; i <= STEPS; i++) {
-        const double before = i ? i - 1 : 0, after = i < STEPS ? i + 1 : STEPS;
-        if (gap[i] > gap[(int) before] || gap[i] > gap[(int) after])
+        const int before = i ? i - 1 : 0, after = i < STEPS ? i + 1 : STEPS;
+        if (gap[i] > gap[before] || gap[i] > gap[after])
             continue;
-        const double found = close_in(trial, before / STEPS, after / STEPS);
+        const double found = close_in(trial, from + before * step, from + after * step);
         const double one = gap_of_moment(trial, found);
         best = one < least ? found : best;
         least = fmin(least, one);
@@ -316,7 +317,10 @@ static const char *look(struct draw *draw, const struct trial *trial,
 {
     const struct pair *pair = &trial->pair[0];
     const bool deep = answer->has_gap && answer->verdict == FMB_OVERLAPPING;
-    const double least = answer->has_gap ? seek_least(trial) : 0;
+    const double T = pair->duration;
+    const double least = !answer->has_gap ? 0
+                         : deep ? seek_least(trial, answer->contact[0] / T, answer->contact[1] / T)
+                                : seek_least(trial, 0, 1);
     struct pair moment = *pair;
     const bool large = !truth->whole && pair->a.body->one.vertex_count > 20;
     const char *fault = NULL;
