@@ -666,7 +666,7 @@ static const struct family families[] = {
     {"turn-tumble-near", "the same, 2^-40 above, below or neither", on_edge, .amount = 1, .cells = FAMILY_3D},
     {"turn-door", "a door in its frame", on_edge, .features = {1, 0, false}, .cells = FAMILY_3D},
     {"turn-door-near", "the same, 2^-40 off", on_edge, .amount = 1, .features = {1, 0, false}, .cells = FAMILY_3D},
-    {"turn-table-two", "two bodies of one motion, 2^-40 apart, into each other or neither", carried, .amount = 1},
+    {"turn-carried", "two bodies of one motion, 2^-40 apart, into each other or neither", carried, .amount = 1},
     {"turn-whole-1", "quaternions of numbers up to 1", whole, .amount = 1},
     {"turn-whole-5", "quaternions of numbers up to 5", whole, .amount = 5},
     {"turn-whole-off", "the same, a number a little off", whole, .amount = 3, .features = {1, 0, false}},
