@@ -322,7 +322,9 @@ static const char *look(struct draw *draw, const struct trial *trial,
                          : deep ? seek_least(trial, answer->contact[0] / T, answer->contact[1] / T)
                                 : seek_least(trial, 0, 1);
     struct pair moment = *pair;
-    const bool large = !truth->whole && pair->a.body->one.vertex_count > 20;
+    /* The static oracle samples the facets of these: the depth is not certain. */
+    const bool large = fmb_body_frame(pair->a.body, 0)->vertex_count > 20 ||
+                       fmb_body_frame(pair->b.body, 0)->vertex_count > 20;
     const char *fault = NULL;
     mpq_t at;
     mpq_init(at);
