@@ -93,6 +93,7 @@ struct page {
     size_t full_bytes; /* of the steps when PAGE_STEPS_BYTES were reached; 0: they were not */
     size_t far_bytes;  /* kept */
     int64_t far_left_out;
+    size_t frame_pairs; /* decided by put_frame_contacts() */
     /* The step that is being added. */
     struct page_step step;
     bool keeps;
@@ -207,6 +208,36 @@ static void put_bodies(struct page *page, struct json_writer *json)
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
+/* Writes the pairs of frames in contact, if a body has several frames: the two indices, the
+ * verdict, and the first and last time of contact. */
+static void put_frame_contacts(struct page *page, struct json_writer *json,
+                               const struct fmb_client_answer *answer)
+{
+    const struct body *of[2] = {&page->body[answer->a], &page->body[answer->b]};
+    const size_t count = of[1]->dim ? of[1]->placed.body->frame_count : 0;
+    const size_t pairs = of[0]->dim ? of[0]->placed.body->frame_count * count : 0;
+    if (pairs < 2 || pairs > PAGE_FRAME_PAIRS_MAX - page->frame_pairs)
+        return;
+    page->frame_pairs += pairs;
+    json_begin(json, "frame_contacts", '[');
+    for (size_t k = 0; k < pairs; k++) {
+        const unsigned frame[2] = {(unsigned) (k / count), (unsigned) (k % count)};
+        struct fmb_body body[2];
+        struct fmb_placement one[2] = {of[0]->placed, of[1]->placed};
+        struct fmb_answer found;
+        for (int side = 0; side < 2; side++) {
+            fmb_body_make_frames(fmb_body_frame(one[side].body, frame[side]), 1, &body[side]);
+            one[side].body = &body[side];
+        }
+        fmb_decide(fmb_method_default(), &one[0], &one[1], page->step.duration, 0, &found);
+        const double contact[] = {frame[0], frame[1], found.verdict, found.contact[0],
+                                  found.contact[1]};
+        if (found.has_contact)
+            json_numbers(json, NULL, contact, 5);
+    }
+    json_end(json, ']');
+}
+
 static void put_answer(struct json_writer *json, const char *key, int dim,
                        const struct fmb_client_answer *answer)
 {
@@ -236,6 +267,8 @@ void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
     if (then)
         put_answer(json, "then", dim, then);
     put_answer(json, then ? "now" : NULL, dim, now);
+    if (page->step.bodies_remain && now->status == FMB_OK && now->answer.has_contact)
+        put_frame_contacts(page, json, now);
     json_end(json, '}');
 }
 
@@ -287,7 +320,8 @@ void page_scene_begin(struct page *page, const struct fmb_scene *scene)
     page_step_begin(page, &(struct page_step){.time = page->end,
                                               .duration = scene->duration,
                                               .margin = scene->margin,
-                                              .label = scene->label});
+                                              .label = scene->label,
+                                              .bodies_remain = true});
     for (size_t i = 0; i < scene->placement_count; i++)
         page_body(page, &scene->placements[i], NULL);
     page->end += scene->duration;

@@ -28,13 +28,15 @@
  * to PAGE_STEPS_BYTES, steps that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs without a
  * gap within the margin are kept up to PAGE_FAR_BYTES in all. Of a step PAGE_PAIRS_MAX pairs that
  * differ are kept, as many in contact or near, and as many others. The page says what was left out.
- */
+ * PAGE_FRAME_PAIRS_MAX pairs of frames are decided at most, in about a second: after that, whole
+ * bodies are drawn as in contact. */
 enum {
     PAGE_BYTES_MAX = 40 << 20,
     PAGE_STEPS_BYTES = 64 << 20,
     PAGE_DIFFERENT_BYTES = 5 << 20,
     PAGE_FAR_BYTES = 5 << 20,
-    PAGE_PAIRS_MAX = 1000
+    PAGE_PAIRS_MAX = 1000,
+    PAGE_FRAME_PAIRS_MAX = 1 << 18
 };
 
 enum page_kind { PAGE_SCENES, PAGE_REPLAY };
@@ -57,6 +59,9 @@ struct page_step {
     double margin;     /* 0: none */
     const char *label; /* NULL or "": none */
     bool differs;      /* the answers then and now differ */
+    /* The bodies exist until page_step_end(): of pairs in contact, the frames in contact are told
+     * from the others. */
+    bool bodies_remain;
 };
 
 /* Returns a writer for further members of the step, valid until the first body is added. Returns

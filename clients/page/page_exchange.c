@@ -5,17 +5,18 @@
 
 enum { NOTE_MAX = 100 };
 
-/* Logs also contain queries that were refused: their bodies may be invalid. */
-static void add_body(struct page *page, const struct exchange *exchange, int32_t i)
+/* Adds a body, in memory of the scene. Logs also contain queries that were refused: their bodies
+ * may be invalid. */
+static void add_body(struct page *page, const struct exchange *exchange, int32_t i,
+                     struct owned_scene *memory)
 {
     const struct query_placement *placement = &exchange->query->placement[i];
     const struct body_view *view = &placement->body;
-    struct owned_scene memory = {.dim = 0};
     struct fmb_placement placed = placement->placed;
     char missing[2 * HANDLE_BYTES + 50] = "the log does not define its handle, ";
     const bool is_named = query_by_handle(placement);
     placed.name = exchange_name(exchange, i);
-    placed.body = is_named ? NULL : body_of_view(view, &memory);
+    placed.body = is_named ? NULL : body_of_view(view, memory);
     for (size_t k = 0, used = strlen(missing); is_named && k < HANDLE_BYTES; k++)
         snprintf(missing + used + 2 * k, 3, "%02x", view->handle.bytes[k]);
     const bool is_good = fmb_placement_check(&placed) == FMB_OK &&
@@ -24,7 +25,6 @@ static void add_body(struct page *page, const struct exchange *exchange, int32_t
               is_named  ? missing
               : is_good ? NULL
                         : "it is not a body that can be drawn");
-    scene_clear(&memory);
 }
 
 static void put_result(struct json_writer *json, const struct exchange *exchange)
@@ -113,7 +113,9 @@ void page_take(struct page *page, const struct page_replayed *replayed, struct e
         .duration = is_scene ? query->scene.duration : query->pair.duration,
         .margin = is_scene ? query->scene.margin : 0,
         .label = is_scene ? query->scene.label : NULL,
-        .differs = replayed->outcome == REPLAY_DIFFERENT};
+        .differs = replayed->outcome == REPLAY_DIFFERENT,
+        .bodies_remain = true};
+    struct owned_scene memory = {.dim = 0};
     struct json_writer *json = page_step_begin(page, &step);
     if (!json)
         return;
@@ -125,7 +127,7 @@ void page_take(struct page *page, const struct page_replayed *replayed, struct e
         exchange_begin(then);
     }
     for (int32_t i = 0; i < query->placement_count; i++)
-        add_body(page, now, i);
+        add_body(page, now, i, &memory);
     struct exchange *const both[2] = {then, now};
     for (struct exchange_pair pair; exchange_next_of_both(both, &pair);) {
         const int last = pair.answered[1];
@@ -133,4 +135,5 @@ void page_take(struct page *page, const struct page_replayed *replayed, struct e
                   is_different(&pair) ? &pair.answer[0] : NULL, &pair.answer[last]);
     }
     page_step_end(page);
+    scene_clear(&memory);
 }

@@ -54,6 +54,12 @@ SCENE
   {"id": 4, "position": [9,0,0], "velocity": [0,1,0], "frames": [{"shape": "sphere", "radius": 0.25, "position": [0,0,1]},
     {"shape": "tetrahedron", "radius": 0.25, "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}]}]}
 SCENE
+    # Twice: a hand of two fingers, one of which meets a post; far above a large ground.
+    hand='{"dim": 3, "duration": 2, "bodies": [
+      {"id": 1, "name": "hand", "frames": [{"shape": "box", "size": [1,1,1]}, {"shape": "box", "position": [3,0,0], "size": [1,1,1]}]},
+      {"id": 2, "name": "post", "shape": "box", "size": [0.5,0.5,0.5], "position": [3,3,0], "velocity": [0,-2,0]},
+      {"id": 3, "name": "ground", "shape": "box", "size": [200,200,1], "position": [0,0,-10]}]}'
+    "$fmb" query --local --html frames.html > frames.said <<< "$hand $hand"
     "$fmb" query --local --html disc.html > disc.said << 'SCENE'
 {"dim": 2, "bodies": [
   {"id": 1, "shape": "sphere", "radius": 1},
@@ -73,6 +79,7 @@ SCENE
     for log in stack refused hard-2d hard-3d; do
         "$fmb" replay --html $log.html "$logs/$log.log" > replay.said
     done
+    awk -v scenes=1 -f "$top/tests/page/many.awk" | "$fmb" query --local --html many.html > many.said
     # A recording whose last scene says another verdict of its first pair.
     "${fmb%fmb}edit-log" --flip 8 "$logs/crowd.log" crowd.log
     "$fmb" replay --html crowd.html crowd.log > replay.said || true
@@ -156,14 +163,39 @@ setup() {
             "table – gripper | separated | 0.025"]'
     found '.opened | .drawn > 40000 and .yellow > 10000 and .red == 0 and .violet > 100' \
         '.opened.widths | length == 5 and all(. >= 90)' \
-        '.opened | .lanes == [["none", "overlapping"], ["touching"], ["separated"]]' \
-        '.opened.named == ["table", "cube", "gripper"] and .opened.over[:2] == ["table: touching", "cube: touching"]'
+        '.opened | .lanes == [["separated", "overlapping"], ["touching"], ["separated"]]' \
+        '.opened.misplaced == [] and (.opened.labels | sort) == ["cube", "gripper", "table"] and .opened.over[:2] == ["table: touching", "cube: touching"]'
 }
 
 @test "each column sorts the pairs, up and down; a pair is named in the order of its ids" {
     found '.reversed == .opened.table' '[.sorts[] | split(",")] as $all | [range(0; 10; 2) | $all[.], ($all[. + 1] | reverse)]
         | map(map({"cube – gripper": 1, "table – cube": 2, "table – gripper": 3}[.]))
         == ([[1, 2, 3], [1, 2, 3], [2, 1, 3], [1, 2, 3], [2, 1, 3]] | map(., .))'
+}
+
+@test "frames in contact are red, the others of their bodies not" {
+    data frames.html | jq -e '[.steps[].pairs[].frame_contacts | select(.)] == [[[1,0,3,1.125,1.875]], [[1,0,3,1.125,1.875]]]' > /dev/null
+    found '.frames.times | map(.fingers | map(.red > 100)) == [[false, false], [false, true], [false, false], [false, true]]' \
+        '.frames.times[0] | .red == 0 and all(.fingers[]; .drawn == 144)'
+}
+
+@test "contacts have the times of the clock" {
+    found '.frames.times | map(.moment.text[:7]) == ["0.000 s", "1.250 s", "2.000 s", "3.250 s"]' \
+        '[.frames.times[].table[0]] == ([range(2) | "hand – post | overlapping | 1.125 to 1.875 s"] + [range(2) | "hand – post | overlapping | 3.125 to 3.875 s"])' \
+        '.frames.next.text == "3.125 s · step 2 of 2"'
+}
+
+@test "the lane of a pair has no holes" {
+    found '.frames.lane == ["separated", "overlapping", "separated", "overlapping", "separated"]'
+}
+
+# Without the ground, which is 283 long, the scene is about 8 long.
+@test "a body that is ten times larger than all others does not decide what is in view" {
+    found '.frames.radius | . > 3 and . < 6'
+}
+
+@test "axes and a scale are drawn, in the unit of the scene" {
+    found '.frames.scale, .round.scale | .drawn > 100 and (.bar - .said * .unit | fabs) < 3 and .bar > 38 and .bar < 103'
 }
 
 @test "the next contact is red, and has the numbers of the answer" {
@@ -224,6 +256,7 @@ setup() {
         '.round.surfaces | map(.[0]) | .[0] > 12.4 and .[0] < 12.567 and .[1] > 6.2 and .[1] < 6.284 and .[2] > 8.4 and .[2] < 8.552' \
         '.disc.surfaces | map(.[2:4]) == [[[-1, 1], [-1, 1]], [[-0.5, 0.5], [-1, 1]], [[-0.625, 0.625], [-0.625, 0.625]]]' \
         '.disc.surfaces | map(.[0]) | .[0] > 3.13 and .[0] < 3.142 and .[1] > 1.78 and .[1] < 1.786 and .[2] > 1.53 and .[2] < 1.55' \
+        '.round.facing | .drawn == 256 and .shades > 15' \
         '[.round, .disc] | all(.bad == 0 and .drawn > 2000) and .[1].yellow > 100'
 }
 
@@ -238,7 +271,7 @@ setup() {
         '.filtered | .rows == 1 and .said == "1 of 42 pairs" and (.first | contains("lid"))' \
         '.sorted | .first < .last and .down == .last' \
         '.arm.widths | length == 6 and (unique | length) == 1' \
-        '.arm.lane[:2] == ["separated", "none"] and (.arm.lane | index("overlapping")) > 1'
+        '.arm.lane == ["separated", "overlapping", "separated"]'
 }
 
 @test "the scene is drawn in every frame of a window that is resized, light and dark, wide and narrow" {
@@ -250,7 +283,8 @@ setup() {
     found '.restored.drawn == .opened.drawn and .restored.yellow == .opened.yellow'
 }
 
-@test "labels never overprint each other" {
+@test "labels overprint neither each other nor what is in front of their bodies" {
+    found '.arm.misplaced == [] and .many.misplaced == [] and .many.labels > 10 and .narrow.misplaced == [] and all(.frames.times[]; .misplaced == [])'
     found '.arm.overprints == [0, 0, 0, 0, 0] and .crowd.overprints == 0 and .narrow.overprints == 0'
 }
 
@@ -260,7 +294,7 @@ setup() {
 
 @test "a recording plays queries that alternate together, with the gap over time" {
     found '.stack.bodies == [16, 16, 16, 16, 16, 16, 16, 16] and .stack.lane == ["overlapping"]' \
-        '.stack.gap and .stack.gapSaid == "gap of 1 – 12: -0.208034 to -0.146024"' \
+        '.stack.gap and .stack.gapSaid == "gap of 1 – 12 over time, in the scene'"'"'s unit of length, dashed: margin: -0.208034 to -0.146024" and .stack.plot.dark > 300' \
         '(.stack.facts.query | startswith("event 0 at byte 0 of ")) and (.stack.facts["answered again"] | startswith("119 separated, 1 overlapping, by certified"))'
 }
 
@@ -275,8 +309,8 @@ setup() {
 }
 
 @test "a number that differs beyond the digits of a fact has its name and all digits" {
-    found '.nudged.facts | .contact == "0 to 0.01 s" and (has("first contact") or has("gap, upper bound") | not)' \
-        '.nudged.facts["last contact"] == "the recording: 0.0100000000001 · answered again: 0.01"'
+    found '.nudged | .text[:7] == "0.010 s" and (.facts | .contact == "0.01 to 0.02 s" and (has("first contact in the window") or has("gap, upper bound") | not))' \
+        '.nudged.facts["last contact in the window"] == "the recording: 0.0100000000001 · answered again: 0.01"'
 }
 
 @test "bodies that cannot be drawn, and refusals, are reported" {

@@ -9,19 +9,21 @@ const copy = document.createElement("canvas").getContext("2d", { willReadFrequen
 function pixels(image = one("#scene"), { x, y, width, height } = { x: 0, y: 0, width: image.width, height: image.height }) {
     Object.assign(copy.canvas, { width, height });
     copy.drawImage(image, -x, -y);
-    const { data } = copy.getImageData(0, 0, width, height), count = { drawn: 0, red: 0, yellow: 0, blue: 0, violet: 0, sum: 0 };
+    const { data } = copy.getImageData(0, 0, width, height), count = { drawn: 0, dark: 0, red: 0, yellow: 0, blue: 0, violet: 0, sum: 0 }, shades = new Set();
     for (let i = 0; i < data.length; i += 4) {
         if (data[i + 3] < 60)
             continue;
         const r = data[i], g = data[i + 1], b = data[i + 2];
         count.drawn++;
+        count.dark += Math.max(r, g, b) < 80 ? 1 : 0;
+        shades.add(`${r} ${g} ${b}`);
         count.red += r > g + 90 && r > b + 90 && r > 120 ? 1 : 0;
         count.yellow += r > 140 && g > 90 && b < g - 70 && r > g + 20 ? 1 : 0;
         count.blue += b > r + 40 && b > g + 20 && r < 100 ? 1 : 0;
         count.violet += b > g + 80 && r > g + 40 && b > r + 30 ? 1 : 0;
         count.sum = (count.sum * 31 + r + 2 * g + 3 * b + i) % 1000000007;
     }
-    return count;
+    return { ...count, shades: shades.size };
 }
 
 /* Draws, and counts. */
@@ -68,21 +70,41 @@ function middleOf(n) {
     return { x: box.left + (at.x + 1) / 2 * box.width, y: box.top + (1 - at.y) / 2 * box.height };
 }
 
-/* The names of the bodies, in the order of their ids: of each the one whose middle is nearest. */
-function named() {
-    const out = [];
-    for (const span of labels()) {
-        const box = span.getBoundingClientRect(), x = (box.left + box.right) / 2, y = (box.top + box.bottom) / 2;
-        const far = view.fmb.stage.items.map((_, n) => Math.hypot(middleOf(n).x - x, middleOf(n).y - y));
-        out[far.indexOf(Math.min(...far))] = span.textContent;
-    }
-    return out;
+/* The visible names that are not on their bodies, up to 4 pixels, or are over what is in front of them. */
+function misplaced() {
+    picture();
+    const { stage, hitAt } = view.fmb;
+    return stage.labels.filter(({ label, n }) => {
+        const box = label.getBoundingClientRect(), ownerOf = (hit) => stage.owners[hit.face.a];
+        const hit = (x, y, right = 0, down = 0) => hitAt({ clientX: box.left + x * box.width + right, clientY: box.top + y * box.height + down });
+        const middle = [[0, 0], [4, 0], [0, 4], [-4, 0], [0, -4]].map((offset) => hit(0.5, 0.5, ...offset)).find((each) => each && ownerOf(each) === n);
+        const isCovered = (other) => other && ownerOf(other) !== n && other.distance < middle.distance - 0.01 * stage.radius;
+        return label.style.visibility === "visible" && (!middle
+            || [0.1, 0.3, 0.7, 0.9].some((x) => [0.2, 0.8].some((y) => isCovered(hit(x, y)))));
+    }).map(({ label }) => label.textContent);
+}
+
+/* Counts the pixels around a point of the scene, in units of the page, and their colours. */
+function around(point, size = 12) {
+    const { stage, camera } = view.fmb, { width, height } = one("#scene");
+    const at = camera.position.clone().fromArray(point).multiplyScalar(2 ** -stage.exponent).project(camera);
+    const box = { x: Math.round((at.x + 1) / 2 * width - size / 2), y: Math.round((1 - at.y) / 2 * height - size / 2), width: size, height: size };
+    return pixels(one("#scene"), box);
+}
+
+/* The length of the scale as it is said, and as it is drawn; and of a unit of length on the screen. */
+function scale() {
+    const { stage, camera } = view.fmb, canvas = one("#axes"), ratio = canvas.width / canvas.clientWidth;
+    const bar = pixels(canvas, { x: 0, y: Math.round(canvas.height - 9 * ratio), width: canvas.width, height: 1 }).drawn / ratio;
+    const right = camera.position.clone().set(1, 0, 0).transformDirection(camera.matrixWorld).multiplyScalar(2 ** -stage.exponent);
+    const unit = right.add(stage.centre).project(camera).x - stage.centre.clone().project(camera).x;
+    return { said: Number(canvas.ariaLabel.replace("length of the scale: ", "")), bar, unit: unit / 2 * one("#stage").clientWidth, drawn: pixels(canvas).drawn };
 }
 
 /* What is said of a point of the window. */
 function pointed({ x, y }) {
     one("#scene").dispatchEvent(new view.PointerEvent("pointermove", { clientX: x, clientY: y }));
-    return text("#pointed");
+    return one("#pointed").hidden ? "" : text("#pointed");
 }
 
 /* The names of the pairs, sorted by each column, up and down. */
@@ -149,7 +171,7 @@ async function scene() {
     found.opened = {
         ...moment(), ...picture(), title: page.title, counts: text("#counts"), table: table(), labels: labels().map((span) => span.textContent),
         scripts: page.scripts.length, resources: view.performance.getEntriesByType("resource").length, places: places(),
-        named: named(), over: [0, 1, 2].map((n) => pointed(middleOf(n))), lanes: [lane(0), lane(1), lane(2)], widths: all("#heads th").map((th) => th.offsetWidth), boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
+        misplaced: misplaced(), over: [0, 1, 2].map((n) => pointed(middleOf(n))), lanes: [lane(0), lane(1), lane(2)], widths: all("#heads th").map((th) => th.offsetWidth), boxes: view.fmb.stage.items.length, camera: view.fmb.camera.zoom,
     };
     await mouse(all("#pairs tr")[2].cells[0]);
     found.gap = { ...picture(), ...moment() };
@@ -201,13 +223,27 @@ async function scene() {
     found.reversed = table();
 }
 
+/* Two scenes of a hand of two fingers. */
+async function frames() {
+    await open("frames.html");
+    const { stage } = view.fmb;
+    found.frames = { table: table(), lane: lane(0), radius: stage.radius * 2 ** stage.exponent, times: [], scale: scale() };
+    for (const s of [0, 1.25, 2, 3.25]) {
+        view.fmb.seek(s);
+        found.frames.times.push({ ...picture(), moment: moment(), table: table(), fingers: [0, 3].map((x) => around([x, 0, 0])), misplaced: misplaced() });
+    }
+    await press("n");
+    await press("n");
+    found.frames.next = moment();
+}
+
 async function shapes() {
     await open("shapes.html");
     found.shapes = { ...picture(), surfaces: surfaces(), table: table(), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length), bad: badTexts() };
     await open("hulls.html");
     found.hulls = { ...picture(), surfaces: surfaces(), kinds: view.fmb.stage.items.map((item) => [item.surface.triangles.length, item.surface.edges.length]) };
     await open("round.html");
-    found.round = { ...picture(), surfaces: surfaces(), bad: badTexts() };
+    found.round = { ...picture(), surfaces: surfaces(), bad: badTexts(), facing: around([0.54, -0.72, 0.43], 16), scale: scale() };
     await open("disc.html");
     found.disc = { ...picture(), surfaces: surfaces(), bad: badTexts() };
     await open("plane.html");
@@ -285,10 +321,11 @@ async function restored() {
 async function arm() {
     await open("arm.html");
     const widths = () => all("#heads th").map((th) => th.offsetWidth).join();
-    found.arm = { ...moment(), rows: table(), overprints: [], counts: text("#counts"), lane: lane(0), widths: [widths()] };
+    found.arm = { ...moment(), rows: table(), overprints: [], misplaced: [], counts: text("#counts"), lane: lane(0), widths: [widths()] };
     for (let i = 0; i < 5; i++) {
         await press("ArrowRight");
         found.arm.overprints.push(overprints());
+        found.arm.misplaced.push(...misplaced());
         found.arm.widths.push(widths());
     }
     found.arm.last = moment();
@@ -303,7 +340,7 @@ async function arm() {
     await mouse(all("#heads th")[0]);
     found.sorted = { first: names[0], last: names[names.length - 1], down: texts("#pairs td:first-child")[0] };
     await resize(390, 900);
-    found.narrow = { width: page.scrollingElement.scrollWidth, stage: one("#stage").clientWidth, overprints: overprints() };
+    found.narrow = { width: page.scrollingElement.scrollWidth, stage: one("#stage").clientWidth, overprints: overprints(), misplaced: misplaced() };
     await resize(1400, 900);
     found.wide = ["#stage", "#rows", "#play", "#overview", "#scrub"].map((selector) => one(selector).getBoundingClientRect().bottom);
     found.scrolls = page.scrollingElement.scrollHeight;
@@ -340,8 +377,10 @@ async function slow() {
 }
 
 async function recording() {
+    await open("many.html");
+    found.many = { misplaced: misplaced(), labels: labels().length };
     await open("stack.html");
-    found.stack = { ...moment(), bodies: [], lane: lane(0), gap: !one("#gap").hidden, gapSaid: text("#gap-said") };
+    found.stack = { ...moment(), bodies: [], lane: lane(0), gap: !one("#gap").hidden, gapSaid: text("#gap-said"), plot: pixels(one("#gap-plot")) };
     for (let i = 0; i < 8; i++) {
         found.stack.bodies.push(view.fmb.stage.items.length);
         await press("ArrowRight");
@@ -441,4 +480,4 @@ async function noScene() {
     });
 }
 
-drive([screenshots, restored, scene, shapes, arm, slow, recording, sizes, meshes, network, broken, dark, noScene]);
+drive([screenshots, restored, scene, frames, shapes, arm, slow, recording, sizes, meshes, network, broken, dark, noScene]);

@@ -20,11 +20,12 @@ const { steps } = data, isReplay = data.kind === "replay";
 
 /* ---- Scenes and answers as JSON ---- */
 
-/* An answer as the page uses it: {verdict, error, contact, box, point, gap}. box: lower ends, then upper ends;
- * point: its time, then its position; gap: bounds, and where there are witness points their time and they. */
-function readAnswer({ verdict, error, contact, box, point, gap, witness }) {
+/* An answer as the page uses it: {step, frames, verdict, error, contact, box, point, gap}. frames: the pairs of frames in
+ * contact, [frame, frame, verdict, first time, last time]; box: lower ends, then upper ends; point: its time, then its
+ * position; gap: bounds, and where there are witness points their time and they. */
+function readAnswer(step, frames, { verdict, error, contact, box, point, gap, witness }) {
     return {
-        verdict: Math.max(verdictNames.indexOf(verdict), 0), error, contact, box: box && [...box.min, ...box.max],
+        step, frames, verdict: Math.max(verdictNames.indexOf(verdict), 0), error, contact, box: box && [...box.min, ...box.max],
         point: point && [point.time, ...point.position],
         gap: gap && [...gap, ...witness ? [witness.time, ...witness.a, ...witness.b] : []],
     };
@@ -39,7 +40,8 @@ function castOf({ bodies }) {
 
 for (const step of steps) {
     Object.assign(step, { T: step.duration, poses: step.bodies, bodies: castOf(step), moves: step.bodies.some(({ velocity }) => velocity) && step.duration > 0 });
-    step.pairs = step.pairs.map(({ bodies: [a, b], then, now, ...answer }) => [a, b, ...(then ? [then, now] : [answer]).map(readAnswer)]);
+    step.pairs = step.pairs.map(({ bodies: [a, b], then, now, frame_contacts: frames, ...answer }) =>
+        [a, b, ...(then ? [then, now] : [answer]).map((each) => readAnswer(step, frames, each))]);
 }
 data.origin = steps[0]?.poses.find(({ position }) => position)?.position ?? [0, 0, 0];
 steps.sort((a, b) => a.t - b.t);
@@ -50,16 +52,28 @@ if (!unit)
 
 /* ---- Numbers ---- */
 
-function short(number) {
-    return number === null ? "∞" : String(Number(number.toPrecision(6)));
+function short(number, digits = 6) {
+    return number === null ? "∞" : String(Number(number.toPrecision(digits)));
 }
 
-/* An interval, with more digits where six do not tell its ends apart. */
-function interval(low, high) {
+/* An interval, with more digits where these do not tell its ends apart. */
+function interval(low, high, least = 6) {
     if (low === high || low === null || high === null)
-        return low === high ? short(low) : `${short(low)} to ${short(high)}`;
-    const digits = [6, 9, 12].find((count) => low.toPrecision(count) !== high.toPrecision(count)) ?? 17;
-    return [low, high].map((number) => String(Number(number.toPrecision(digits)))).join(" to ");
+        return low === high ? short(low, least) : `${short(low, least)} to ${short(high, least)}`;
+    const digits = [least, 9, 12].find((count) => count >= least && low.toPrecision(count) !== high.toPrecision(count)) ?? 17;
+    return [low, high].map((number) => short(number, digits)).join(" to ");
+}
+
+/* Times of the window of a step as times of the clock, with six digits of the window. */
+function clockInterval({ t, T }, first, last) {
+    const begin = unit ? t : 0, digits = 6 + Math.max(Math.floor(Math.log10(begin / (T || 1))), 0);
+    return interval(begin + first, begin + last, Math.min(digits, 15));
+}
+
+/* The smallest of the numbers 1, 2 and 5, times a power of ten, that is not below x. */
+function roundUp(x) {
+    const power = 10 ** Math.floor(Math.log10(x));
+    return [1, 2, 5, 10].find((k) => k * power >= x) * power;
 }
 
 /* ---- Answers ---- */

@@ -2,15 +2,16 @@
 
 const view = { from: 0, to: wholeSpan, width: 0 }; /* the shown part, in s, and its width in pixels */
 
-/* When the verdict of a row's mark is shown: [from, to] in s. It is the contact interval where windows
- * do not overlap, and else until the next step of the same bodies, if that comes soon. */
-function spanOf(row, mark) {
+/* What a row's mark shows, as [from, to, verdict] in s, in order: until the next step of the same bodies, if that
+ * comes soon, its verdict; where windows do not overlap, separated before and after the contact. */
+function spansOf(row, mark) {
     const i = row.at[mark], step = steps[i], from = begins[i], like = begins[nextLike[i]] ?? Infinity;
     const to = isReplay && like - from <= recent ? like : begins[i + 1];
-    const answer = nowOf(row.pairs[mark]);
-    if (verdictOf(answer) < TOUCHING || !answer.contact || step.T === 0 || to - from < 0.999 * step.T)
-        return [from, to];
-    return [from + answer.contact[0], Math.min(from + answer.contact[1], to)];
+    const answer = nowOf(row.pairs[mark]), verdict = verdictOf(answer);
+    if (verdict < TOUCHING || !answer.contact || step.T === 0 || to - from < 0.999 * step.T)
+        return [[from, to, verdict]];
+    const [first, last] = answer.contact.map((time) => Math.min(from + time, to));
+    return [[from, first, SEPARATED], [first, last, verdict], [last, to, SEPARATED]].filter(([begin, end, each]) => each === verdict || begin < end);
 }
 
 /* The row as [from, to, verdict], in order; what follows with the same verdict is one. */
@@ -18,8 +19,7 @@ function segmentsOf(row) {
     if (row.segments)
         return row.segments;
     const segments = [];
-    row.at.forEach((i, mark) => {
-        const [from, to] = spanOf(row, mark), verdict = verdictOf(nowOf(row.pairs[mark]));
+    row.at.flatMap((_, mark) => spansOf(row, mark)).forEach(([from, to, verdict]) => {
         const before = segments[segments.length - 1];
         if (before && before[2] === verdict && from - before[1] <= 1e-9 * wholeSpan)
             before[1] = Math.max(to, before[1]);
@@ -88,14 +88,9 @@ function drawLane(canvas, some, size = sizeOf(canvas)) {
         to.fillRect(Math.round(x(begins[i])) - 1, 0, 3, height);
 }
 
-/* The axis below: ticks at round times, and pauses that are left out. */
-function drawOverview() {
-    drawLane(one("overview"), rows);
-    const canvas = one("overview"), to = canvas.getContext("2d"), width = view.width = canvas.clientWidth;
-    if (width === 0)
-        return;
-    const span = view.to - view.from, rough = span / (width / 90);
-    const power = 10 ** Math.floor(Math.log10(rough)), every = Math.max([1, 2, 5, 10].find((k) => k * power >= rough) * power, unit ? 0 : 1);
+/* Ticks at round times, below the height y. */
+function drawTicks(to, width, y) {
+    const span = view.to - view.from, every = Math.max(roundUp(span / (width / 90)), unit ? 0 : 1);
     to.font = "11px system-ui, sans-serif";
     to.fillStyle = stage.colours.ink;
     let free = -Infinity;
@@ -109,14 +104,23 @@ function drawOverview() {
         const text = `${short(k * every)}${unit && ` ${unit}`}`, size = to.measureText(text).width;
         if (x < free || x + size > width)
             continue;
-        to.fillText(text, x + 3, 31);
-        to.fillRect(x, 18, 1, 16);
+        to.fillText(text, x + 3, y + 13);
+        to.fillRect(x, y, 1, 16);
         free = x + size + 8;
     }
+}
+
+/* All verdicts, above the axis of time; and pauses that are left out. */
+function drawOverview() {
+    drawLane(one("overview"), rows);
+    const canvas = one("overview"), to = canvas.getContext("2d"), width = view.width = canvas.clientWidth;
+    if (width === 0)
+        return;
+    drawTicks(to, width, 18);
     to.fillStyle = stage.colours.dim;
     pauses.forEach((pause, i) => {
         if (pause > longestPause)
-            to.fillRect((begins[i + 1] - view.from) / span * width - 2, 0, 3, 34);
+            to.fillRect((begins[i + 1] - view.from) / (view.to - view.from) * width - 2, 0, 3, 34);
     });
 }
 
@@ -138,7 +142,7 @@ function drawGap(row) {
         return;
     const { to, width, height, x } = fitted, margin = steps[row.at[0]].margin ?? 0;
     const low = Math.min(0, ...gaps.map(([, gap]) => gap)), high = Math.max(margin, ...gaps.map(([, gap]) => gap)) || 1;
-    const y = (gap) => height - 8 - (gap - low) / (high - low || 1) * (height - 24);
+    const y = (gap) => height - 24 - (gap - low) / (high - low || 1) * (height - 36);
     const line = (points, colour, dash = []) => {
         to.strokeStyle = colour;
         to.setLineDash(dash);
@@ -148,11 +152,15 @@ function drawGap(row) {
         points.forEach(([s, gap], k) => to[k === 0 || s - points[k - 1][0] > 3 * Math.max(usualPause, wholeSpan / 500) ? "moveTo" : "lineTo"](x(s), y(gap)));
         to.stroke();
     };
-    for (const level of margin ? [0, margin] : [0]) {
+    drawTicks(to, width, height - 16);
+    to.fillStyle = stage.colours.ink;
+    [0, margin, high, low].forEach((level, k, all) => {
         to.strokeStyle = stage.colours.rule;
-        to.setLineDash(level ? [4, 4] : []);
-        to.strokeRect(0, y(level), width, 0);
-    }
+        to.setLineDash(k === 1 ? [4, 4] : []);
+        to.strokeRect(0, y(level), k < 2 ? width : 6, 0);
+        if (all.slice(0, k).every((other) => Math.abs(y(other) - y(level)) >= 12))
+            to.fillText(short(level, 3), 8, y(level) + 4);
+    });
     if (row.differs)
         line(gapsOf(row, true), stage.colours.diff, [5, 3]);
     line(gaps, stage.colours.gap);
@@ -161,5 +169,6 @@ function drawGap(row) {
         if (gaps.length < 200)
             to.fillRect(x(s) - 1.5, y(gap) - 1.5, 3, 3);
     });
-    one("gap-said").textContent = `gap of ${row.name}: ${interval(Math.min(...gaps.map(([, gap]) => gap)), Math.max(...gaps.map(([, gap]) => gap)))}`;
+    one("gap-said").textContent = `gap of ${row.name} over time, in the scene's unit of length${margin ? ", dashed: margin" : ""}${
+        row.differs ? `, dashed in colour: ${data.sides[0]}` : ""}: ${interval(Math.min(...gaps.map(([, gap]) => gap)), Math.max(...gaps.map(([, gap]) => gap)))}`;
 }

@@ -53,10 +53,10 @@ function positionOf(step, k, part) {
 
 /* The faces of all bodies are one object of three.js, and their edges another: without a GPU an object takes
  * longer than hundreds of triangles. Their coordinates are relative to stage.centre. */
-const faces = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshPhongMaterial({
-    side: THREE.DoubleSide, flatShading: true, specular: 0, vertexColors: THREE.VertexColors,
+const faces = new THREE.Mesh(new THREE.BufferGeometry(), [true, false].map((flatShading) => new THREE.MeshPhongMaterial({
+    side: THREE.DoubleSide, flatShading, specular: 0, vertexColors: THREE.VertexColors,
     polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-}));
+})));
 const edges = new THREE.LineSegments(), ends = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineDashedMaterial());
 const bodies = new THREE.Group().add(faces, edges, ends);
 edges.userData.colour = "edge";
@@ -66,12 +66,15 @@ world.add(bodies);
 
 const isDrawn = (body) => typeof body[1] === "number";
 
-/* The solid of shape `index`, its centre, and corners of its extent. */
+/* The solid of shape `index`, its centre, corners of its extent, its size, and further places for its name. */
 function surfaceOf(index) {
     if (!stage.solids.has(index)) {
         const solid = solidOf(data.shapes[index], stage.exponent), { corners } = solid, box = new THREE.Box3().setFromPoints(corners);
-        const extent = corners.length <= 100 ? corners : boxOf(box.min, box.getSize(new THREE.Vector3())).corners;
-        stage.solids.set(index, { ...solid, centre: box.getCenter(new THREE.Vector3()), extent });
+        const size = box.getSize(new THREE.Vector3()), extent = corners.length <= 100 ? corners : boxOf(box.min, size).corners;
+        const middles = solid.starts.slice(0, 8).map((start, k, { [k + 1]: end }) =>
+            corners.slice(start, end).reduce((mean, corner, _, all) => sum(mean, corner, 1 / all.length), new THREE.Vector3()));
+        const places = [...middles, ...extent.slice(0, 8).map((corner) => corner.clone().lerp(middles[0], 0.4))];
+        stage.solids.set(index, { ...solid, centre: box.getCenter(new THREE.Vector3()), extent, size: size.length(), places });
     }
     return stage.solids.get(index);
 }
@@ -89,27 +92,40 @@ function buildBodies() {
         item.first = count;
         count += item.surface.corners.length;
     }
-    const [position, color] = [0, 1].map(() => new THREE.BufferAttribute(new Float32Array(3 * count), 3));
-    for (const [object, list] of [[faces, "triangles"], [edges, "edges"]]) {
+    const [position, color, normal] = [0, 1, 2].map(() => new THREE.BufferAttribute(new Float32Array(3 * count), 3));
+    const indices = (list, accepts) => stage.items.flatMap(({ surface, first }) =>
+        surface[list].filter(([k]) => accepts(surface.normals[k])).flat().map((k) => first + k));
+    const flat = indices("triangles", (round) => !round), round = indices("triangles", Boolean);
+    for (const [object, index] of [[faces, flat.concat(round)], [edges, indices("edges", () => true)]]) {
         object.geometry.dispose();
-        object.geometry = new THREE.BufferGeometry().setAttribute("position", position).setAttribute("color", color);
-        object.geometry.setIndex(stage.items.flatMap(({ surface, first }) => surface[list].flat().map((k) => first + k)));
+        object.geometry = new THREE.BufferGeometry().setAttribute("position", position).setAttribute("color", color).setAttribute("normal", normal);
+        object.geometry.setIndex(index);
     }
+    faces.geometry.addGroup(0, flat.length, 0);
+    faces.geometry.addGroup(flat.length, round.length, 1);
+    stage.owners = new Uint32Array(count); /* [corner]: the index of its item */
+    stage.items.forEach(({ first, surface }, n) => stage.owners.fill(n, first, first + surface.corners.length));
 }
 
 /* Sets corners and colours for this moment. */
 function placeBodies() {
-    const { position, color } = faces.geometry.attributes, point = new THREE.Vector3();
+    const { position, color, normal } = faces.geometry.attributes, point = new THREE.Vector3();
     for (const item of stage.items) {
-        const { surface: { corners, centre }, source: { stream: { step, part }, k }, first } = item;
-        const turn = orientationOf(step, k), at = positionOf(step, k, part).sub(stage.centre), colour = colourOf(item);
+        const { surface: { corners, normals, starts, centre }, source: { stream: { step, part }, k }, first } = item;
+        const turn = orientationOf(step, k), at = positionOf(step, k, part).sub(stage.centre);
         [item.centre] = placed([centre], step, k, part);
         corners.forEach((corner, i) => {
             point.copy(corner).applyQuaternion(turn).add(at).toArray(position.array, 3 * (first + i));
-            colour.toArray(color.array, 3 * (first + i));
+        });
+        normals.forEach((each, i) => point.copy(each).applyQuaternion(turn).toArray(normal.array, 3 * (first + i)));
+        const { whole, frames } = item.state, usual = colourOf(item, whole);
+        starts.forEach((start, frame) => {
+            const state = stronger(frames[frame], whole), colour = state === whole ? usual : colourOf(item, state);
+            for (let i = start; i < (starts[frame + 1] ?? corners.length); i++)
+                colour.toArray(color.array, 3 * (first + i));
         });
     }
-    position.needsUpdate = color.needsUpdate = true;
+    position.needsUpdate = color.needsUpdate = normal.needsUpdate = true;
     faces.geometry.boundingSphere = null;
     bodies.position.copy(stage.centre);
 }
@@ -146,15 +162,28 @@ function setLines(object, points) {
 /* ---- Extent ---- */
 
 /* The corners of all bodies of a step, at the begin and the end of its window. */
-function cornersOf(step, only = null) {
+function cornersOf(step, only = null, huge = Infinity) {
     const out = [];
     step.bodies.forEach((body, k) => {
-        if (!isDrawn(body) || (only && !only.includes(k)))
+        if (!isDrawn(body) || (only && !only.includes(k)) || surfaceOf(body[1]).size >= huge)
             return;
         for (const part of step.moves ? [0, 1] : [0])
             out.push(...placed(surfaceOf(body[1]).extent, step, k, part));
     });
     return out;
+}
+
+/* The first of the bodies of a step by size that is ten times larger than all smaller ones together, if these have
+ * at least half of the frames: its size; Infinity: there is none. */
+function hugeSizeOf(step) {
+    const box = new THREE.Box3(), sized = step.bodies.flatMap((body, k) => isDrawn(body) ? { k, ...surfaceOf(body[1]) } : []).sort((a, b) => a.size - b.size);
+    let frames = -sized.reduce((count, { starts }) => count + starts.length, 0) / 2;
+    return sized.find(({ k, size, starts }) => {
+        const extent = frames < 0 ? 0 : box.getSize(new THREE.Vector3()).length(), isHuge = extent > 0 && size > 10 * extent;
+        frames += starts.length;
+        cornersOf(step, [k]).forEach((corner) => box.expandByPoint(corner));
+        return isHuge;
+    })?.size ?? Infinity;
 }
 
 /* Sets centre and radius. */
@@ -209,12 +238,12 @@ function look(direction) {
 function fit(row = null, direction = null) {
     if (!renderer || stage.step < 0)
         return;
-    const pair = row && pairAt(row, stage.step);
+    const pair = row && pairAt(row, stage.step), huge = hugeSizeOf(steps[stage.step]);
     const to = direction ?? camera.position.clone().sub(controls.target).toArray();
     if (pair && pair[0] >= 0)
         setExtent(cornersOf(steps[stage.step], pair.slice(0, 2)));
     else
-        setExtent(likeSteps(stage.step).flatMap((step) => cornersOf(step)));
+        setExtent(likeSteps(stage.step).flatMap((step) => cornersOf(step, null, huge)));
     look(to);
 }
 
@@ -258,25 +287,35 @@ function followPace(moves, ms) {
 
 /* ---- Drawing a moment ---- */
 
-/* Colours and names follow the strongest verdict of each body: {verdict, now}, now: in contact at this
- * moment of the window. */
+/* A verdict, and whether the contact is at this moment of the window, up to rounding. */
+function stateOf(verdict, [first, last], offset) {
+    const small = 1e-9 * wholeSpan;
+    return { verdict, now: verdict >= TOUCHING && first - small <= offset && offset <= last + small };
+}
+
+/* The stronger of two states; one of them may be undefined. */
+const stronger = (a, b) => (a && (!b || a.now > b.now || (a.now === b.now && a.verdict > b.verdict)) ? a : b);
+
+/* Names follow the strongest state of each body. Colours follow that of the pairs whose frames in contact are not
+ * told apart (whole), and that of each frame in contact (frames). */
 function statesOf(step, offset) {
-    const states = step.bodies.map(() => ({ verdict: 0, now: false }));
+    const none = { verdict: 0, now: false }, states = step.bodies.map(() => ({ ...none, whole: none, frames: [] }));
     for (const pair of step.pairs) {
-        const answer = nowOf(pair), verdict = verdictOf(answer);
-        const [first, last] = answer.contact ?? [0, Infinity];
-        const isNow = verdict >= TOUCHING && first <= offset && offset <= last;
-        for (const k of pair.slice(0, 2)) {
-            const state = states[k];
-            if (state && (isNow > state.now || (isNow === state.now && verdict > state.verdict)))
-                Object.assign(state, { verdict, now: isNow });
-        }
+        const answer = nowOf(pair), state = stateOf(verdictOf(answer), answer.contact ?? [0, Infinity], offset);
+        pair.slice(0, 2).forEach((k, side) => {
+            const body = states[k], { frames } = body;
+            Object.assign(body, stronger(state, body));
+            if (!answer.frames?.length)
+                body.whole = stronger(state, body.whole);
+            for (const [a, b, verdict, ...contact] of answer.frames ?? [])
+                frames[side ? b : a] = stronger(stateOf(verdict, contact, offset), frames[side ? b : a]);
+        });
     }
     return states;
 }
 
-/* The colour of an item. */
-function colourOf({ state, source: { stream: { step }, k } }) {
+/* The colour of frames of an item in a state. */
+function colourOf({ source: { stream: { step }, k } }, state) {
     const { none, touching, overlapping } = stage.colours, at = new THREE.Color(none), full = state.verdict === OVERLAPPING ? overlapping : touching;
     if (one("colour").value === "body")
         at.set(bodyColours[(Number(step.bodies[k][0]) || k) % bodyColours.length]);
@@ -377,38 +416,109 @@ function beginLabels() {
             return { label, width: Math.ceil(width), height: Math.ceil(height) };
         });
     }
-    stage.labels.forEach((label, n) => { label.item = stage.items[n]; });
+    stage.labels.forEach((label, n) => Object.assign(label, { n, item: stage.items[n] }));
 }
 
-/* Places the names beside the middles of their bodies, those in contact first; one that would
- * overprint another is not shown. */
-function drawLabels() {
-    const { width, height } = stage.size, placed = [];
-    const order = [...stage.labels ?? []].sort((a, b) => b.item.state.verdict - a.item.state.verdict);
-    for (const { label, item, width: w, height: h } of order) {
-        const at = item.centre.clone().project(camera);
-        const x = Math.round((at.x + 1) / 2 * width - w / 2), y = Math.round((1 - at.y) / 2 * height - h / 2);
-        const isFree = one("names").checked && (pace.scale >= 1 || item.state.now) && x >= 0 && y >= 0 && x + w <= width && y + h <= height
-            && placed.every((p) => x >= p.x + p.w || p.x >= x + w || y >= p.y + p.h || p.y >= y + h);
-        label.style.visibility = isFree ? "visible" : "hidden";
-        if (isFree) {
-            label.style.transform = `translate(${x}px, ${y}px)`;
-            placed.push({ x, y, w, h });
-        }
+/* What is in front in each cell of CELL x CELL pixels: the index of the item, or -1, and its depth. */
+const CELL = 4;
+function findFront() {
+    const columns = Math.ceil(stage.size.width / CELL), rows = Math.ceil(stage.size.height / CELL), { position } = faces.geometry.attributes;
+    const items = new Int32Array(columns * rows).fill(-1), depths = new Float32Array(columns * rows).fill(Infinity), index = faces.geometry.index.array;
+    const toCells = new THREE.Matrix4().makeScale(stage.size.width / CELL / 2, -stage.size.height / CELL / 2, 1)
+        .multiply(new THREE.Matrix4().makeTranslation(1, -1, 0)).multiply(camera.projectionMatrix).multiply(camera.matrixWorldInverse);
+    const { array: at } = toCells.multiply(bodies.matrixWorld).applyToBufferAttribute(position.clone());
+    for (let k = 0; k < index.length; k += 3) {
+        const [a, b, c] = [3 * index[k], 3 * index[k + 1], 3 * index[k + 2]], owner = stage.owners[index[k]];
+        const ux = at[b] - at[a], uy = at[b + 1] - at[a + 1], vx = at[c] - at[a], vy = at[c + 1] - at[a + 1], area = ux * vy - uy * vx;
+        const [left, right] = [Math.max(Math.floor(Math.min(at[a], at[b], at[c])), 0), Math.min(Math.max(at[a], at[b], at[c]), columns)];
+        const [top, bottom] = [Math.max(Math.floor(Math.min(at[a + 1], at[b + 1], at[c + 1])), 0), Math.min(Math.max(at[a + 1], at[b + 1], at[c + 1]), rows)];
+        for (let y = top; y < bottom && area !== 0; y++)
+            for (let x = left; x < right; x++) {
+                const px = x + 0.5 - at[a], py = y + 0.5 - at[a + 1], u = (px * vy - py * vx) / area, v = (ux * py - uy * px) / area;
+                const depth = at[a + 2] + u * (at[b + 2] - at[a + 2]) + v * (at[c + 2] - at[a + 2]), cell = y * columns + x;
+                if (u >= 0 && v >= 0 && u + v <= 1 && depth > -1 && depth < depths[cell])
+                    [items[cell], depths[cell]] = [owner, depth];
+            }
     }
+    return { columns, items, depths };
+}
+
+/* Whether a name of item n in a rectangle covers nothing in front of the point that it names; isSeen: which is seen. */
+function isInFront({ columns, items, depths }, n, { x, y, w, h }, depth, isSeen) {
+    const middle = Math.floor((y + h / 2) / CELL) * columns + Math.floor((x + w / 2) / CELL), own = items[middle] === n ? depths[middle] : depth;
+    if (isSeen && items[middle] !== n)
+        return false;
+    for (let row = Math.floor(y / CELL); row * CELL < y + h; row++)
+        for (let cell = row * columns + Math.floor(x / CELL); cell * CELL < row * columns * CELL + x + w; cell++)
+            if (items[cell] !== n && depths[cell] < own - 4e-5) /* a thousandth of the radius */
+                return false;
+    return true;
+}
+
+/* Places the names in the middles of their bodies, those in contact first, or else of frames, or towards a corner; one
+ * that would overprint another, or what is in front of its body, is not shown. */
+function drawLabels() {
+    const { width, height } = stage.size, taken = [];
+    const order = [...stage.labels ?? []].sort((a, b) => b.item.state.verdict - a.item.state.verdict);
+    let front = null;
+    for (const { label, item, n, width: w, height: h } of order) {
+        const isWanted = one("names").checked && (pace.scale >= 1 || item.state.now), { surface, source: { stream: { step, part }, k } } = item;
+        const freeAt = (point, isSeen) => {
+            const at = point.clone().project(camera), x = Math.round((at.x + 1) / 2 * width - w / 2), y = Math.round((1 - at.y) / 2 * height - h / 2);
+            const isFree = x >= 0 && y >= 0 && x + w <= width && y + h <= height
+                && taken.every((p) => x >= p.x + p.w || p.x >= x + w || y >= p.y + p.h || p.y >= y + h);
+            return isFree && isInFront(front ??= findFront(), n, { x, y, w, h }, at.z, isSeen) && { x, y, w, h };
+        };
+        const points = isWanted ? [item.centre, ...placed(surface.places, step, k, part)] : [];
+        const place = points.reduce((found, point) => found || freeAt(point, true), null) || (isWanted && freeAt(points[1], false));
+        Object.assign(label.style, place ? { visibility: "visible", transform: `translate(${place.x}px, ${place.y}px)` } : { visibility: "hidden" });
+        taken.push(...place ? [place] : []);
+    }
+}
+
+/* ---- Axes and scale ---- */
+
+/* The directions of the axes, and a round length in the scene's unit. */
+function drawAxes() {
+    const perPixel = scaled((camera.right - camera.left) / camera.zoom / stage.size.width, stage.exponent), length = roundUp(40 * perPixel);
+    const key = [...camera.matrixWorldInverse.elements, perPixel, stage.colours.ink].join();
+    one("axes").hidden = !(perPixel > 1e-300 && perPixel < 1e300);
+    const fitted = key !== stage.axes && fitCanvas(one("axes"));
+    if (!fitted)
+        return;
+    stage.axes = key;
+    const { to, height } = fitted, across = length / perPixel;
+    Object.assign(to, { font: "12px system-ui, sans-serif", strokeStyle: stage.colours.ink, fillStyle: stage.colours.ink });
+    for (const [axis, unit] of units.slice(0, stage.dim).entries()) {
+        const { x, y } = unit.clone().transformDirection(camera.matrixWorldInverse);
+        to.moveTo(45, height - 70);
+        to.lineTo(45 + 30 * x, height - 70 - 30 * y);
+        if (Math.hypot(x, y) > 0.2)
+            to.fillText("xyz"[axis], 42 + 38 * x, height - 66 - 38 * y);
+    }
+    to.stroke();
+    to.strokeRect(8.5, height - 8.5, across, 0);
+    [0, across].forEach((x) => to.strokeRect(8.5 + x, height - 12.5, 0, 8));
+    to.fillText(short(length), 12, height - 13);
+    one("axes").ariaLabel = `length of the scale: ${short(length)}`;
 }
 
 /* ---- The pointer ---- */
 
+/* The nearest point of the faces below a point of the window. */
+function hitAt({ clientX, clientY }) {
+    const box = one("scene").getBoundingClientRect(), ray = new THREE.Raycaster();
+    ray.setFromCamera({ x: (clientX - box.left) / box.width * 2 - 1, y: 1 - (clientY - box.top) / box.height * 2 }, camera);
+    return ray.intersectObject(faces)[0];
+}
+
 /* Names the body below the pointer. */
 function drawPointed(event) {
-    const box = one("scene").getBoundingClientRect(), ray = new THREE.Raycaster();
-    ray.setFromCamera({ x: (event.clientX - box.left) / box.width * 2 - 1, y: 1 - (event.clientY - box.top) / box.height * 2 }, camera);
-    const [hit] = ray.intersectObject(faces);
+    const hit = hitAt(event);
     one("pointed").hidden = !hit;
     if (!hit)
         return;
-    const { state: { verdict }, source: { stream, k } } = stage.items[lastUpTo(stage.items.map((item) => item.first), hit.face.a)];
+    const { state: { verdict }, source: { stream, k } } = stage.items[stage.owners[hit.face.a]];
     one("pointed").textContent = `${bodyName(stream.step, k)}${verdict ? `: ${verdictNames[verdict]}` : ""}`;
 }
 
@@ -431,6 +541,7 @@ function drawScene() {
     stage.dirty = stage.moved = false;
     renderer.render(world, camera);
     drawLabels();
+    drawAxes();
 }
 
 if (renderer) {

@@ -65,9 +65,9 @@ function hullOf(corners) {
 
 /* The set of points within a radius of the convex hull of corners. Its surface is made of the points of a sphere,
  * in 2D of a circle: each is moved by the corner that is farthest in its direction. The directions are shifted a
- * little, so that no two corners are equally far. */
+ * little, so that no two corners are equally far. Triangles are counterclockwise seen from outside. */
 function roundOf(corners, radius, dim) {
-    const turns = dim === 2 ? 64 : 32, rows = dim === 2 ? 0 : turns / 2, out = { corners: [], triangles: [], edges: [] };
+    const turns = dim === 2 ? 64 : 32, rows = dim === 2 ? 0 : turns / 2, out = { corners: [], normals: [], triangles: [], edges: [] };
     const normalOf = (row, turn) => {
         const up = rows ? Math.cos(Math.PI * row / rows) : 0, flat = Math.sqrt(1 - up * up), angle = 2 * Math.PI * turn / turns;
         return new THREE.Vector3(flat * Math.cos(angle), flat * Math.sin(angle), up);
@@ -76,12 +76,14 @@ function roundOf(corners, radius, dim) {
         const row = Math.floor(k / turns), turn = k % turns, next = k - turn + (turn + 1) % turns;
         const beside = normalOf(Math.min(row + 0.01, rows - 0.01), turn + 0.01);
         out.corners.push(sum(corners.reduce((a, b) => b.dot(beside) > a.dot(beside) ? b : a), normalOf(row, turn), radius));
+        if (rows)
+            out.normals.push(normalOf(row, turn));
         if (2 * row === rows)
             out.edges.push([k, next]);
         if (row === 0 || row === rows)
-            out.triangles.push([k - turn, k, next]);
+            out.triangles.push(row === 0 ? [k - turn, k, next] : [k - turn, next, k]);
         if (row < rows)
-            out.triangles.push([k, next, k + turns], [next, next + turns, k + turns]);
+            out.triangles.push([next, k, k + turns], [next, k + turns, next + turns]);
         if (row < rows && turn % (turns / 4) === 0)
             out.edges.push([k, k + turns]);
     }
@@ -114,11 +116,14 @@ function frameOf(frame, dim, unit) {
     return frame.radius ? roundOf(core.corners, scaled(frame.radius, -unit), dim) : core;
 }
 
-/* The surface of a shape, in units of 2^unit. */
+/* The surface of a shape, in units of 2^unit. starts: the first corner of each frame; normals: of the corners of
+ * round frames. */
 function solidOf(shape, unit) {
-    const solid = { corners: [], triangles: [], edges: [] };
+    const solid = { corners: [], normals: [], triangles: [], edges: [], starts: [] };
     for (const given of shape.frames) {
         const frame = frameOf(given, shape.dim, unit), first = solid.corners.length;
+        solid.starts.push(first);
+        frame.normals?.forEach((normal, k) => { solid.normals[first + k] = normal; });
         frame.corners.forEach((corner) => solid.corners.push(corner));
         frame.triangles.forEach((triangle) => solid.triangles.push(triangle.map((k) => k + first)));
         if (shape.frames.length <= 1000) /* of more, edges would hide the faces */

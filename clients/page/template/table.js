@@ -7,7 +7,7 @@ const hasGaps = steps.some((step) => step.pairs.some((pair) => nowOf(pair).gap))
 const columns = [
     { title: "pair", width: "20%", value: (row) => row.name },
     { title: "verdict", width: "20%", value: (row, answer) => answer ? -answer.verdict : 1 },
-    { title: "contact", width: "25%", value: (row, answer) => answer?.contact?.[0] ?? Infinity },
+    { title: "contact", width: "25%", value: (row, answer) => answer?.contact ? answer.step.t + answer.contact[0] : Infinity },
     { title: "gap", width: "17%", value: (row, answer) => answer?.gap?.[0] ?? Infinity },
     { title: "over time", width: "18%", lane: true, value: (row) => segmentsOf(row).find(([, , verdict]) => verdict >= TOUCHING)?.[0] ?? Infinity },
 ].filter(({ title, lane }) => (title !== "contact" || hasContacts) && (title !== "gap" || hasGaps) && (!lane || steps.length > 1 || hasContacts));
@@ -123,26 +123,27 @@ function factsOf(answer) {
         return { verdict: "no answer" };
     const facts = { verdict: answer.error ?? verdictNames[answer.verdict] };
     if (answer.contact)
-        facts.contact = `${interval(...answer.contact)} s`;
+        facts.contact = `${clockInterval(answer.step, ...answer.contact)} s`;
     const dim = (answer.box?.length ?? 0) / 2;
     for (let axis = 0; axis < dim; axis++)
         facts[`box ${"xyz"[axis]}`] = interval(answer.box[axis], answer.box[dim + axis]);
     if (answer.point)
-        facts.point = `(${answer.point.slice(1).map(short).join(", ")}) at ${short(answer.point[0])} s`;
+        facts.point = `(${answer.point.slice(1).map((x) => short(x)).join(", ")}) at ${clockInterval(answer.step, answer.point[0], answer.point[0])} s`;
     if (answer.gap)
         facts.gap = interval(...answer.gap.slice(0, 2));
     return facts;
 }
 
-/* [fact, name, number] of each number of an answer: the fact that shows it rounded. */
+/* [fact, name, number] of each number of an answer: the fact that shows it rounded. Times are those of its window,
+ * since those of the clock are rounded. */
 function numbersOf(answer) {
     const { contact, box, point, gap } = answer ?? {}, axis = (i, dim) => "xyz"[i % dim];
     const dim = (box?.length ?? 0) / 2, points = ((gap?.length ?? 2) - 3) / 2;
     return [
-        ...(contact ?? []).map((number, i) => ["contact", ["first contact", "last contact"][i], number]),
+        ...(contact ?? []).map((number, i) => ["contact", `${["first", "last"][i]} contact in the window`, number]),
         ...(box ?? []).map((number, i) => [`box ${axis(i, dim)}`, `box ${i < dim ? "min" : "max"} ${axis(i, dim)}`, number]),
-        ...(point ?? []).map((number, i) => ["point", i ? `point ${axis(i - 1, 3)}` : "point, time", number]),
-        ...(gap ?? []).map((number, i) => ["gap", ["gap, lower bound", "gap, upper bound", "gap, time"][i]
+        ...(point ?? []).map((number, i) => ["point", i ? `point ${axis(i - 1, 3)}` : "point, time in the window", number]),
+        ...(gap ?? []).map((number, i) => ["gap", ["gap, lower bound", "gap, upper bound", "gap, time in the window"][i]
             ?? `witness point of the ${i - 3 < points ? "first" : "second"}, ${axis(i - 3, points)}`, number]),
     ];
 }
