@@ -361,14 +361,17 @@ enum fmb_want {
  *   separated    their least distance
  *   touching     0
  *   overlapping  minus the depth, the length of the shortest translation after which the bodies do
- *                not overlap at any time of the window
+ *                not overlap at any time of the window; of a pair of which a placement has an end,
+ *                the greatest depth at any one time
  *
  * Of bodies of several frames it is the least gap of a pair of their frames, with its direction and
  * points; frame names that pair. If doubles cannot distinguish the gaps of several pairs, one of
  * these pairs is named. Its gap exceeds the least one by at most the width.
  *
  * Lower bound. The direction n proves it: n . (b - a) >= bounds[0] |n| for all points a of the
- * first frame and b of the second at the same time of the window.
+ * first frame and b of the second at the same time of the window. If a placement has an end: at the
+ * time of the least distance or the greatest depth only; that a pair is separated over the window
+ * is proven by its certificate.
  *
  * Upper bound. For a separated pair the witness points prove it: |b - a| plus the distances of the
  * two points from their frames at that time is at most bounds[1]. For an overlapping pair,
@@ -746,6 +749,25 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  *
  * "overlapping at 0 a 0 1 2:1/16 4 b 0 1:1/16 2 4:1/16" of two cubes: three weights are stated, and
  * five follow from five equations.
+ *
+ * Of a pair of which a placement has an end, a certificate has one of the forms
+ *
+ *     separated from LO to HI DIRECTION from LO to HI DIRECTION ...
+ *     overlapping at TIME a WEIGHTS b WEIGHTS
+ *
+ * LO and HI are fractions of the window, rational numbers. The first LO is 0, every other one is
+ * the HI before it, and the last HI is 1: the intervals [LO, HI] cover the window. A DIRECTION n is
+ * one of
+ *
+ *     normal a (X Y Z)           R_A (X Y Z), a vector that turns with A
+ *     normal b (X Y Z)           R_B (X Y Z)
+ *     product (X Y Z) (U V W)    R_A (X Y Z) x R_B (U V W), in 3D only
+ *
+ * and the certificate states n . (b - a) > 0, with radii n . (b - a) > R |n|, for all points a and
+ * b at all times of its interval, with n as it is at that time. OVERLAPPING is as above, with the
+ * poses at TIME. There are no certificates of pairs that turn and touch.
+ *
+ * "separated from 0 to 1/2 normal a (1 0 0) from 1/2 to 1 product (0 1 0) (3 0 -1)"
  */
 
 /* The capacity that every certificate fits into, its terminating 0 included. */
@@ -761,7 +783,7 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  *      *length   the length of the certificate without the terminating 0, also if the status is
  *                FMB_OVER_LIMIT; 0 for every other failure
  * Returns FMB_OK; FMB_OVER_LIMIT if the certificate does not fit; a status of fmb_decide();
- * FMB_CANNOT_DECIDE for bodies of several frames.
+ * FMB_CANNOT_DECIDE for bodies of several frames, and for a pair that turns and has no verdict.
  *
  * A pair whose numbers span more than 512 bits has no certificate: the status is FMB_OK and the
  * text is empty. The span is measured as follows. Let 2^e be the largest power of two that divides
@@ -771,6 +793,11 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * stands for v T. Let n be |q|^2 for the smallest integers q that are proportional to the
  * orientation, or 1 without an orientation. Let m be the product of both n, or n itself if they are
  * equal. The pair spans f - e bits plus the number of bits of m.
+ *
+ * A pair of which a placement has an end is measured at the TIME of an overlap alone. Lengths are
+ * multiples of 2^e / m there; f is that of a bound of all of them over the window. 1024 bits are
+ * the limit. The status is FMB_OK and the text empty also if such a pair touches, or if more than
+ * 256 intervals would be needed.
  *
  * Half of all certificates are shorter than 100 bytes. Those with times in windows of
  * extreme length, and those with normals of touching pairs, are longer. The text is also empty if

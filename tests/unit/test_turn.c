@@ -233,8 +233,21 @@ struct resting {
     double memory[2][400];
 };
 
-/* Both orders of the pair have the same answer, which is returned, and its verdict where nothing
- * else is wanted; in a window of 2 s. */
+/* The certificate holds, and is there unless the frames touch, and turn, or are not decided. */
+static void check_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
+                              enum fmb_status status, enum fmb_verdict verdict)
+{
+    char text[FMB_CERTIFICATE_MAX], why[200];
+    size_t length;
+    assert_int_equal(fmb_certificate(a, b, 2, text, sizeof text, &length), status);
+    assert_int_equal(length > 0, verdict == FMB_SEPARATED || verdict == FMB_OVERLAPPING ||
+                                     (verdict && !a->end_count && !b->end_count));
+    if (length > 0 && !fmb_certificate_holds(a, b, 2, verdict, text, why, sizeof why))
+        fail_msg("%s: %s", why, text);
+}
+
+/* Both orders of the pair have the same answer, which is returned, its verdict where nothing else
+ * is wanted, and a certificate; in a window of 2 s. */
 static enum fmb_status decide(const struct fmb_placement placement[2], struct fmb_answer *out)
 {
     struct fmb_answer swapped;
@@ -250,6 +263,8 @@ static enum fmb_status decide(const struct fmb_placement placement[2], struct fm
         assert_int_equal(fmb_prepare(&placement[f], 0, 1, &prepared[f]), FMB_OK);
     assert_int_equal(fmb_decide_prepared(&prepared[0], &prepared[1], 2, &verdict), status);
     assert_int_equal(verdict, out->verdict);
+    check_certificate(&placement[0], &placement[1], status, out->verdict);
+    check_certificate(&placement[1], &placement[0], status, out->verdict);
     return status;
 }
 

@@ -13,7 +13,8 @@
  *   second frame at that time, so that no b equals a. Together with a point that both frames have
  *   in common at a time of the window: TOUCHING.
  *
- * A common point comes as weights of vertices: certificate_check_weights.c.
+ * A common point comes as weights of vertices: certificate_check_weights.c. A pair that turns:
+ * certificate_check_turn.c; at a time it is as at rest.
  *
  * Frames with radii, R > 0 their sum. For points a and b of the cores, let N . (b - a) >= g > 0 at
  * all times of the window; then the distance of the cores is at least g / |N|. SEPARATED: g > R
@@ -43,7 +44,7 @@ void check_copy(mpq_t out[AXES], mpq_t v[AXES])
         mpq_set(out[axis], v[axis]);
 }
 
-static void add(mpq_t out[AXES], mpq_t v[AXES])
+void check_add(mpq_t out[AXES], mpq_t v[AXES])
 {
     for (int axis = 0; axis < AXES; axis++)
         mpq_add(out[axis], out[axis], v[axis]);
@@ -117,19 +118,14 @@ static void proof_each(struct check_proof *proof, void (*call)(mpq_ptr))
     check_each(&proof->duration, sizeof *proof - offsetof(struct check_proof, duration), call);
 }
 
-void check_turn(const struct fmb_placement *placement, bool back, mpq_t v[AXES])
+void check_turn(struct check_side *side, bool back, mpq_t v[AXES])
 {
-    const int count = placement->orientation_count;
-    mpq_t q[4], norm, along, product, cross_of_v[AXES], out[AXES];
-    if (count == 0)
+    mpq_t norm, along, product, cross_of_v[AXES], out[AXES], *const q = side->orientation;
+    if (side->placement->orientation_count == 0)
         return;
-    mpq_inits(q[0], q[1], q[2], q[3], norm, along, product, NULL);
+    mpq_inits(norm, along, product, NULL);
     check_each(cross_of_v, sizeof cross_of_v, mpq_init);
     check_each(out, sizeof out, mpq_init);
-    mpq_set_d(q[0], placement->orientation[0]);
-    for (int i = 1; i < count; i++)
-        mpq_set_d(q[count == 2 ? 3 : i],
-                  back ? -placement->orientation[i] : placement->orientation[i]);
 
     /* With r = (x, y, z): n R v = (ww - r.r) v + 2 (r.v) r + 2 w (r x v), n = ww + r.r. */
     dot(norm, q + 1, q + 1);
@@ -141,6 +137,8 @@ void check_turn(const struct fmb_placement *placement, bool back, mpq_t v[AXES])
     mpq_add(along, along, along);
     check_add_multiple(out, along, q + 1, AXES);
     mpq_add(along, q[0], q[0]);
+    if (back)
+        mpq_neg(along, along);
     check_add_multiple(out, along, cross_of_v, AXES);
     mpq_mul(product, q[0], q[0]);
     mpq_add(norm, norm, product);
@@ -149,7 +147,7 @@ void check_turn(const struct fmb_placement *placement, bool back, mpq_t v[AXES])
 
     check_each(out, sizeof out, mpq_clear);
     check_each(cross_of_v, sizeof cross_of_v, mpq_clear);
-    mpq_clears(q[0], q[1], q[2], q[3], norm, along, product, NULL);
+    mpq_clears(norm, along, product, NULL);
 }
 
 /* Sets origin and components of a frame that is not a hull, in body coordinates. The origin of a
@@ -174,13 +172,75 @@ static void set_frame(struct check_side *side)
     mpq_clear(half);
 }
 
+/* Without an orientation: that of no rotation. */
+static void set_orientation(mpq_t out[4], const double *q, int count)
+{
+    mpq_set_d(out[0], count == 0 ? 1 : q[0]);
+    for (int i = 1; i < count; i++)
+        mpq_set_d(out[count == 2 ? 3 : i], q[i]);
+}
+
+/* Sets the pose at the end of the window, whose quaternion has the sign of a turn of less than 180
+ * degrees. */
+static void set_late(struct check_side *side, const mpq_t duration)
+{
+    const struct fmb_placement *placement = side->placement;
+    const bool ends = placement->end_count != 0;
+    mpq_t product, sum;
+    mpq_inits(product, sum, NULL);
+    check_add_numbers(side->late_position, side->frame->dim,
+                      ends ? placement->end_position : placement->position);
+    check_add_multiple(side->late_position, duration, side->velocity, AXES);
+    set_orientation(side->late_orientation,
+                    ends ? placement->end_orientation : placement->orientation,
+                    placement->orientation_count);
+    for (int i = 0; i < 4; i++) {
+        mpq_mul(product, side->orientation[i], side->late_orientation[i]);
+        mpq_add(sum, sum, product);
+    }
+    for (int i = 0; i < 4 && mpq_sgn(sum) < 0; i++)
+        mpq_neg(side->late_orientation[i], side->late_orientation[i]);
+    mpq_clears(product, sum, NULL);
+}
+
 static void set_side(struct check_side *side, const struct fmb_placement *placement)
 {
     side->placement = placement;
     side->frame = fmb_body_frame(placement->body, 0);
     check_add_numbers(side->velocity, side->frame->dim, placement->velocity);
+    check_add_numbers(side->position, side->frame->dim, placement->position);
+    set_orientation(side->orientation, placement->orientation, placement->orientation_count);
     if (side->frame->shape != FMB_HULL)
         set_frame(side);
+}
+
+void check_between(mpq_t *out, mpq_t *x, mpq_t *y, const mpq_t s, int count)
+{
+    mpq_t product;
+    mpq_init(product);
+    for (int i = 0; i < count; i++) {
+        mpq_sub(product, y[i], x[i]);
+        mpq_mul(product, product, s);
+        mpq_add(out[i], x[i], product);
+    }
+    mpq_clear(product);
+}
+
+/* Sets the poses of a pair that turns at the time of the proof, which is in the window: what moves
+ * by a velocity keeps that. */
+static void set_pose(struct check_proof *proof)
+{
+    mpq_t s;
+    mpq_init(s);
+    mpq_div(s, proof->time, proof->duration);
+    for (int f = 0; f < 2; f++) {
+        struct check_side *side = &proof->side[f];
+        if (side->placement->end_count == 0)
+            continue;
+        check_between(side->orientation, side->orientation, side->late_orientation, s, 4);
+        check_between(side->position, side->position, side->late_position, s, AXES);
+    }
+    mpq_clear(s);
 }
 
 static bool is_zero_vector(mpq_t v[AXES])
@@ -195,8 +255,11 @@ static void set_pair(struct check_proof *proof, const struct fmb_placement *a,
     mpq_set_d(proof->duration, duration);
     set_side(&proof->side[0], a);
     set_side(&proof->side[1], b);
-    proof->moving =
-        !is_zero_vector(proof->side[0].velocity) || !is_zero_vector(proof->side[1].velocity);
+    proof->turning = a->end_count != 0 || b->end_count != 0;
+    proof->moving = proof->turning || !is_zero_vector(proof->side[0].velocity) ||
+                    !is_zero_vector(proof->side[1].velocity);
+    for (int f = 0; f < 2 && proof->turning; f++)
+        set_late(&proof->side[f], proof->duration);
     check_subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
     mpq_t other;
     mpq_init(other);
@@ -227,7 +290,7 @@ void check_vertex(struct check_side *side, unsigned k, mpq_t out[AXES])
         mpq_set_d(out[axis], frame->vertices[(size_t) axis * frame->vertex_stride + k]);
     for (int i = 0; i < side->count; i++)
         if (has_component(side, k, i))
-            add(out, side->edge[i]);
+            check_add(out, side->edge[i]);
 }
 
 /* ---- The text ----
@@ -297,10 +360,9 @@ bool check_take_number(const char **at, mpq_t out)
     return take_denominator(at, mpq_denref(out)) && in_lowest_terms(out);
 }
 
-/* " normal (X Y Z)". */
-static bool take_normal(const char **at, int dim, mpq_t out[AXES])
+bool check_take_vector(const char **at, const char *word, int dim, mpq_t out[AXES])
 {
-    bool good = check_take(at, " normal (");
+    bool good = check_take(at, word) && check_take(at, "(");
     for (int axis = 0; good && axis < dim; axis++)
         good = (axis == 0 || check_take(at, " ")) && check_take_number(at, out[axis]);
     return good && check_take(at, ")");
@@ -313,11 +375,20 @@ static const char *flaw_of_text(struct check_proof *proof, enum fmb_verdict verd
     const char *at = text, *name = fmb_verdict_name(verdict);
     if (!name || !check_take(&at, name))
         return "the text does not begin with the verdict";
-    if (verdict != FMB_OVERLAPPING && !take_normal(&at, proof->dim, proof->normal))
+    if (proof->turning && verdict == FMB_SEPARATED)
+        return check_flaw_of_intervals(at, proof);
+    if (proof->turning && verdict == FMB_TOUCHING)
+        return "a pair that turns and touches has no certificate";
+    if (verdict != FMB_OVERLAPPING &&
+        !check_take_vector(&at, " normal ", proof->dim, proof->normal[0]))
         return "the verdict is not followed by a normal of this pair";
     if (verdict != FMB_SEPARATED) {
         if (!check_take(&at, " at ") || !check_take_number(&at, proof->time))
             return "there is no time in lowest terms where it is due";
+        if (mpq_sgn(proof->time) < 0 || mpq_cmp(proof->time, proof->duration) > 0)
+            return "the time is not in the window";
+        if (proof->turning)
+            set_pose(proof);
         if (!check_take_weights(&at, proof))
             return "the time is not followed by weights of vertices of both frames";
     }
@@ -329,14 +400,11 @@ static const char *flaw_of_text(struct check_proof *proof, enum fmb_verdict verd
 /* Adds N . position to the values of the normal over a frame in body coordinates. */
 static void add_position(struct check_proof *proof, struct check_side *side)
 {
-    mpq_t position[AXES], value;
+    mpq_t value;
     mpq_init(value);
-    check_each(position, sizeof position, mpq_init);
-    check_add_numbers(position, proof->dim, side->placement->position);
-    dot(value, proof->normal, position);
+    dot(value, proof->normal[0], side->position);
     mpq_add(side->low, side->low, value);
     mpq_add(side->high, side->high, value);
-    check_each(position, sizeof position, mpq_clear);
     mpq_clear(value);
 }
 
@@ -349,8 +417,8 @@ static void set_range(struct check_proof *proof, struct check_side *side)
     check_each(normal, sizeof normal, mpq_init);
     check_each(vertex, sizeof vertex, mpq_init);
     check_each(of_edge, sizeof of_edge, mpq_init);
-    check_copy(normal, proof->normal);
-    check_turn(side->placement, true, normal);
+    check_copy(normal, proof->normal[0]);
+    check_turn(side, true, normal);
     dot(of_origin, normal, side->origin);
     for (int i = 0; i < side->count; i++)
         dot(of_edge[i], normal, side->edge[i]);
@@ -386,13 +454,13 @@ static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict ve
     set_range(proof, a);
     set_range(proof, b);
     mpq_sub(gap, b->low, a->high);
-    dot(growth, proof->normal, proof->v);
+    dot(growth, proof->normal[0], proof->v);
     mpq_mul(growth, growth, proof->duration);
     if (mpq_sgn(growth) < 0)
         mpq_add(gap, gap, growth);
     int sign = mpq_sgn(gap);
     if (proof->rounded && sign > 0) { /* g^2 against |N|^2 R^2 */
-        dot(growth, proof->normal, proof->normal);
+        dot(growth, proof->normal[0], proof->normal[0]);
         mpq_mul(growth, growth, proof->radius);
         mpq_mul(growth, growth, proof->radius);
         mpq_mul(gap, gap, gap);
@@ -413,8 +481,6 @@ static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict ve
 
 static const char *flaw_of_point(struct check_proof *proof, enum fmb_verdict verdict)
 {
-    if (mpq_sgn(proof->time) < 0 || mpq_cmp(proof->time, proof->duration) > 0)
-        return "the time is not in the window";
     if (!proof->moving && mpq_sgn(proof->time) != 0)
         return "the time of a static pair is not 0";
     return check_flaw_of_weights(proof, verdict);
@@ -423,7 +489,7 @@ static const char *flaw_of_point(struct check_proof *proof, enum fmb_verdict ver
 static const char *flaw_of(struct check_proof *proof, enum fmb_verdict verdict, const char *text)
 {
     const char *flaw = flaw_of_text(proof, verdict, text);
-    if (!flaw && verdict != FMB_OVERLAPPING)
+    if (!flaw && verdict != FMB_OVERLAPPING && !proof->turning)
         flaw = flaw_of_normal(proof, verdict);
     if (!flaw && verdict != FMB_SEPARATED)
         flaw = flaw_of_point(proof, verdict);
@@ -445,8 +511,8 @@ static const char *flaw_of_placements(const struct fmb_placement *a, const struc
         return fmb_status_text(FMB_BAD_DURATION);
     if (a->body->frame_count > 1 || b->body->frame_count > 1)
         return "a body of several frames has no certificate";
-    if (a->end_count != 0 || b->end_count != 0)
-        return "a body that turns has no certificate";
+    if ((a->end_count != 0 || b->end_count != 0) && duration == 0)
+        return fmb_status_text(FMB_BAD_DURATION);
     return NULL;
 }
 

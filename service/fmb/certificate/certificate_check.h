@@ -26,6 +26,8 @@ struct check_side {
     mpq_t origin[AXES];
     mpq_t edge[AXES][AXES]; /* the components */
     mpq_t velocity[AXES];
+    mpq_t orientation[4], position[AXES]; /* at the beginning; check_set_pose(): at a time */
+    mpq_t late_orientation[4], late_position[AXES]; /* at the end of the window, if a frame turns */
     mpq_t low, high;        /* of the normal over the frame at time 0, in the world */
     mpq_t sum[AXES], total; /* of weighted vertices; of weights: stated ones only */
 };
@@ -37,14 +39,15 @@ enum { EQUATIONS = 2 + AXES, FOLLOWING_MAX = EQUATIONS };
 /* The pair, and the contents of the text. */
 struct check_proof {
     int dim;
-    bool moving;   /* a velocity is not 0 */
+    bool moving;   /* a velocity is not 0, or a placement has an end */
+    bool turning;  /* a placement has an end */
     bool rounded;  /* the sum of the radii is not 0 */
     int following; /* weights that are not stated */
     struct check_side side[2];
     mpq_t duration;
-    mpq_t v[AXES]; /* velocity of the second frame relative to the first */
-    mpq_t radius;  /* the sum of both radii */
-    mpq_t normal[AXES];
+    mpq_t v[AXES];         /* velocity of the second frame relative to the first */
+    mpq_t radius;          /* the sum of both radii */
+    mpq_t normal[2][AXES]; /* the second one of a product only */
     mpq_t time;
     mpq_t equation[EQUATIONS][FOLLOWING_MAX + 1]; /* coefficients, and the sum */
 };
@@ -54,6 +57,7 @@ struct check_proof {
 void check_each(void *numbers, size_t bytes, void (*call)(mpq_ptr));
 
 void check_copy(mpq_t out[AXES], mpq_t v[AXES]);
+void check_add(mpq_t out[AXES], mpq_t v[AXES]); /* out := out + v */
 void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES]);
 
 /* out := out + v, of dim numbers. */
@@ -64,7 +68,10 @@ void check_add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers);
 
 /* v := R(q) v, as fmb.h defines it, with the plane of 2D in space; back: v := R(q)^-1 v, the
  * rotation of the conjugate quaternion. */
-void check_turn(const struct fmb_placement *placement, bool back, mpq_t v[AXES]);
+void check_turn(struct check_side *side, bool back, mpq_t v[AXES]);
+
+/* out := x + s (y - x), of count numbers; out may be x. */
+void check_between(mpq_t *out, mpq_t *x, mpq_t *y, const mpq_t s, int count);
 
 /* The number of vertices of a frame, and vertex k, numbered as in fmb.h, in the coordinates of the
  * side. */
@@ -77,11 +84,16 @@ bool check_take(const char **at, const char *word);
 bool check_is_digit(char c);
 bool check_take_digits(const char **at, mpz_t out); /* a natural number without leading zeros */
 bool check_take_number(const char **at, mpq_t out); /* in lowest terms */
+bool check_take_vector(const char **at, const char *word, int dim,
+                       mpq_t out[AXES]); /* WORD(X Y Z) */
 
 /* Takes " a WEIGHTS b WEIGHTS". */
 bool check_take_weights(const char **at, struct check_proof *proof);
 
 /* Returns what is wrong with the weights, or NULL. */
 const char *check_flaw_of_weights(struct check_proof *proof, enum fmb_verdict verdict);
+
+/* Returns what is wrong with what follows "separated" of a pair that turns, or NULL. */
+const char *check_flaw_of_intervals(const char *at, struct check_proof *proof);
 
 #endif

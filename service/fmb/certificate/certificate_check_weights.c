@@ -41,7 +41,7 @@ static bool add_following(struct check_proof *proof, int f, mpq_t vertex[AXES])
     const int k = proof->following++;
     if (k == FOLLOWING_MAX)
         return false;
-    check_turn(proof->side[f].placement, false, vertex);
+    check_turn(&proof->side[f], false, vertex);
     mpq_set_ui(proof->equation[f][k], 1, 1);
     for (int axis = 0; axis < AXES; axis++)
         (f ? mpq_neg : mpq_set)(proof->equation[2 + axis][k], vertex[axis]);
@@ -105,9 +105,9 @@ static void set_sums(struct check_proof *proof)
         mpq_set_ui(proof->equation[f][proof->following], 1, 1);
         mpq_sub(proof->equation[f][proof->following], proof->equation[f][proof->following],
                 side->total);
-        check_turn(side->placement, false, side->sum);
+        check_turn(side, false, side->sum);
         check_add_multiple(side->sum, proof->time, side->velocity, AXES);
-        check_add_numbers(side->sum, proof->dim, side->placement->position);
+        check_add(side->sum, side->position);
     }
     for (int axis = 0; axis < AXES; axis++)
         mpq_sub(proof->equation[2 + axis][proof->following], proof->side[1].sum[axis],

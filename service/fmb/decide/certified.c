@@ -406,7 +406,7 @@ static bool begin_with_end(const struct frame_pair *pair, unsigned want, double 
         if (!quick)
             out->turning = memory_allocate(sizeof *out->turning);
         const bool done =
-            turn_begin(pair, want, farthest, quick, quick ? &bounded : out->turning, answer);
+            turn_begin(pair, want, farthest, quick, quick ? &bounded : out->turning, NULL, answer);
         if (done)
             end_turning(out);
         return done;

@@ -294,6 +294,28 @@ static void give_up(struct turn_decision *decision)
     pop(decision);
 }
 
+/* The frames are apart over the interval in progress. direction: what proved it, or NULL: the
+ * corners last tried. */
+static void prove(struct turn_decision *decision, struct turn_interval interval,
+                  const struct turn_direction *direction)
+{
+    struct turn_proof *proof = decision->proof;
+    pop(decision);
+    if (!proof || proof->count++ >= TURN_PROOF)
+        return;
+    struct turn_part *part = &proof->part[proof->count - 1];
+    *part = (struct turn_part){.interval = interval};
+    if (direction) {
+        part->direction = *direction;
+        return;
+    }
+    part->corners = decision->corners[decision->corner - 1];
+    part->sign = decision->sign[decision->corner - 1];
+    turn_direction_of(decision->path.pair.view, &part->corners, &part->direction);
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        part->direction.m[0][axis] *= part->sign;
+}
+
 /* Looks at the middle of an interval. */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
@@ -310,7 +332,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
             turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         for (unsigned k = 0; k < count; k++)
             if (turn_distance(&decision->path, &direction[k], interval.lo, interval.hi) > 0) {
-                pop(decision);
+                prove(decision, interval, &direction[k]);
                 return;
             }
         if (width > short_interval) {
@@ -333,17 +355,18 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
 static void try_corner(struct turn_decision *decision, struct turn_interval interval)
 {
     if (decision->corner < decision->corner_count && decision->outcome != TURN_APART &&
-        decision->outcome != TURN_CLEAN) {
+        (decision->outcome != TURN_CLEAN || decision->proof)) {
         const unsigned k = decision->corner++;
         decision->looks += LOOKS_DIRECTION + vertices_of(decision) / VERTICES_OF_LOOK;
         const enum turn_outcome outcome = turn_exact_outcome(
             &decision->exact, &decision->corners[k], decision->sign[k], interval.lo, interval.hi);
-        if (outcome != TURN_OPEN)
+        if (outcome == TURN_APART || outcome == TURN_CLEAN ||
+            (outcome == TURN_REST && decision->outcome == TURN_OPEN))
             decision->outcome = outcome;
         return;
     }
     if (decision->outcome == TURN_APART)
-        pop(decision);
+        prove(decision, interval, NULL);
     else if (decision->outcome != TURN_OPEN)
         decision->stage = TURN_ENDS;
     else if (interval.hi - interval.lo <= least_interval)
@@ -368,7 +391,7 @@ static void look_at_ends(struct turn_decision *decision, struct turn_interval in
         return;
     const bool both = at_lo != FMB_SEPARATED && at_hi != FMB_SEPARATED;
     const bool any = at_lo != FMB_SEPARATED || at_hi != FMB_SEPARATED || inside != FMB_SEPARATED;
-    if (!rests || both) {
+    if (both || (!rests && (any || !decision->proof))) {
         pop(decision);
     } else if (interval.hi - interval.lo > short_interval) {
         divide(decision, interval);
@@ -685,8 +708,11 @@ bool turn_step(struct turn_decision *decision, struct fmb_answer *answer)
 }
 
 bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
-                struct turn_decision *out, struct fmb_answer *answer)
+                struct turn_decision *out, struct turn_proof *proof, struct fmb_answer *answer)
 {
+    out->proof = proof;
+    if (proof)
+        proof->count = 0;
     out->swapped = support_order(frames, &out->frames);
     out->want = want;
     out->farthest = farthest;

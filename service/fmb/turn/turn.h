@@ -39,6 +39,22 @@ struct turn_interval {
     double lo, hi;
 };
 
+/* What proves that the frames are apart over the window: intervals that cover it, in order, and a
+ * direction of each. */
+enum { TURN_PROOF = 256 };
+
+struct turn_part {
+    struct turn_interval interval;
+    struct turn_direction direction;
+    int sign; /* not 0: the exact direction is that of corners, or its opposite */
+    struct turn_corners corners;
+};
+
+struct turn_proof {
+    unsigned count; /* above TURN_PROOF: more than there is room for */
+    struct turn_part part[TURN_PROOF];
+};
+
 /* A decision in progress. It points into itself: not to be copied. */
 struct turn_decision {
     struct frame_pair frames; /* in the order of support_order() */
@@ -69,18 +85,20 @@ struct turn_decision {
     double farthest;
     unsigned corner, corner_count;
     enum turn_outcome outcome; /* the strongest of the corners tried */
+    struct turn_proof *proof;  /* to be completed, or NULL */
 };
 
 /* Sets a decision that is complete. */
 void turn_none(struct turn_decision *out);
 
 /* Begins the decision of a checked pair. farthest: a gap that is surely greater has bounds of NAN.
- * bounded: only what takes tens of microseconds, without
- * allocation. Returns whether it is complete, with *answer set: without a verdict if it cannot be
- * decided. If not, a bounded decision has ended; for any other, call turn_step() until it returns
- * true. In: *answer is all 0. */
+ * bounded: only what takes tens of microseconds, without allocation. proof: NULL, or wanted, of a
+ * decision that is not bounded: if the frames are separated, it is complete in the end; if they
+ * overlap, out->overlap is a time of overlap. Returns whether it is complete, with *answer set:
+ * without a verdict if it cannot be decided. If not, a bounded decision has ended; for any other,
+ * call turn_step() until it returns true. In: *answer is all 0. */
 bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
-                struct turn_decision *out, struct fmb_answer *answer);
+                struct turn_decision *out, struct turn_proof *proof, struct fmb_answer *answer);
 
 /* Performs a step of less than a millisecond. Returns whether the decision is complete, with
  * *answer set; its memory is then freed. */

@@ -197,6 +197,17 @@ static bool set_direction(const struct turn_exact *exact, const struct turn_corn
     return !integer_is_zero(work->m[0]) && (corners->of < 2 || !integer_is_zero(work->m[1]));
 }
 
+void turn_exact_direction(const struct turn_exact *exact, const struct turn_corners *corners,
+                          int sign, mpz_t m[2][3])
+{
+    struct work work;
+    integer_each(&work, sizeof work, mpz_init);
+    set_direction(exact, corners, sign, &work);
+    for (int i = 0; i < 6; i++)
+        mpz_swap(m[i / 3][i % 3], work.m[i / 3][i % 3]);
+    integer_each(&work, sizeof work, mpz_clear);
+}
+
 /* value += factor times 2^bits times the least (way > 0) or minus the greatest x . v over the
  * vertices of a frame. Returns whether x . v is constant. */
 static bool add_least(const struct turn_exact *exact, int f, vector x, int way, const mpz_t factor,

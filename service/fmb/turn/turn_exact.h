@@ -26,6 +26,11 @@ struct turn_exact {
 void turn_exact_begin(const struct turn_path *path, struct turn_exact *out);
 void turn_exact_end(struct turn_exact *exact);
 
+/* m := what a direction by vertices, or its opposite if sign is -1, is a multiple of: m, or e and f
+ * (turn_path.h). In: all are 0. */
+void turn_exact_direction(const struct turn_exact *exact, const struct turn_corners *corners,
+                          int sign, mpz_t m[2][3]);
+
 /* Returns what a direction, or its opposite if sign is -1, proves of the closed interval [lo, hi],
  * both multiples of 2^-53. It allocates and frees through GMP. */
 enum turn_outcome turn_exact_outcome(const struct turn_exact *exact,
