@@ -510,6 +510,38 @@ static void straight_motion_as_an_end(void **state)
 }
 
 /* Bodies whose numbers span the range of doubles are left to integers, or have no answer. */
+/* A window that ends with a graze: the last time of contact lies in intervals whose middles are no
+ * short dyadic numbers. */
+static void the_end_of_a_graze_is_that_of_exact_poses(void **state)
+{
+    static const double box[4] = {-0x1.ab199a5cf83c8p-2, -0x1.cc3bf00e29928p-1, 0x1.e6ef8a214a85p-4,
+                                  0x1.633cfd9bb194p-3};
+    static const double cuboid[6] = {-0x1.d2e7f418f419cp-2, 0x1.842eda4148c58p-3,
+                                     -0x1.f66ed6d4490ep-4,  0x1.f3027ad4b8ec4p-2,
+                                     -0x1.8f3ef82a7113p-4,  -0x1.e34d46ff0d22p-5};
+    struct fmb_body a, b;
+    assert_int_equal(fmb_body_make(2, FMB_BOX, box, 4, &a), FMB_OK);
+    assert_int_equal(fmb_body_make(2, FMB_CUBOID, cuboid, 6, &b), FMB_OK);
+    const struct fmb_placement pair[2] = {
+        {.body = &a,
+         .position = {0x1.94cb7112155cp-3, 0x1.67c406c148c6p-1},
+         .orientation = {-0x1.16d6cc7c4c1e8p-2, 0x1.3dc331bdc738p-2},
+         .orientation_count = 2},
+        {.body = &b,
+         .position = {-0x1.d60dd1725129bp-2, 0x1.8d00c39ee2443p+0},
+         .orientation = {0x1.8a0300895ebd4p-3, 0x1.5d2aa27038048p-3},
+         .orientation_count = 2,
+         .end_position = {-0x1.94c4edf62e15dp+1, 0x1.8ce7eed478b7p+1},
+         .end_orientation = {-0x1.70b845cfe432cp-2, 0x1.16836505e41aep-1},
+         .end_count = 4}};
+    struct fmb_answer answer;
+    assert_int_equal(fmb_decide(fmb_method_default(), &pair[0], &pair[1], 1, 0, &answer), FMB_OK);
+    assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+    /* By rational numbers, the frames part between these times. */
+    assert_true(answer.contact[1] >= 0.2896245213189828);
+    assert_true(answer.contact[1] <= 0.2896245213189829 + 1e-12);
+}
+
 static void numbers_of_any_size(void **state)
 {
     static const double q0[4] = {1, 0, 0, 0}, q1[4] = {3, 0, 0, 1};
@@ -706,6 +738,7 @@ int main(void)
         cmocka_unit_test(a_point_through_a_turning_plate_is_never_called_touching),
         cmocka_unit_test(windows_join),
         cmocka_unit_test(straight_motion_as_an_end),
+        cmocka_unit_test(the_end_of_a_graze_is_that_of_exact_poses),
         cmocka_unit_test(numbers_of_any_size),
         cmocka_unit_test(random_windows_agree_with_static_poses),
     };

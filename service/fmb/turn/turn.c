@@ -217,6 +217,13 @@ static void begin_corners(struct turn_decision *decision, struct turn_interval i
 
 /* ---- Intervals ---- */
 
+/* Returns the middle, rounded down to a multiple of 2^-52, so that 1 - s is exact (an interval next
+ * to a known contact is no power of two long). */
+static double middle_of(struct turn_interval interval)
+{
+    return floor(0.5 * (interval.lo + interval.hi) * 0x1p52) * 0x1p-52;
+}
+
 static void push(struct turn_decision *decision, double lo, double hi)
 {
     if (lo < hi)
@@ -279,7 +286,7 @@ static void pop(struct turn_decision *decision)
 /* Divides the interval in progress; the half that is next in order comes last. */
 static void divide(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = 0.5 * (interval.lo + interval.hi);
+    const double middle = middle_of(interval);
     pop(decision);
     if (decision->phase == TURN_LAST)
         push(decision, interval.lo, middle);
@@ -319,7 +326,7 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
 /* Looks at the middle of an interval. */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = 0.5 * (interval.lo + interval.hi), width = interval.hi - interval.lo;
+    const double middle = middle_of(interval), width = interval.hi - interval.lo;
     struct turn_direction direction[3];
     const enum fmb_verdict verdict = verdict_at(decision, middle);
     const bool sure = decision->looked == middle && decision->sure;
@@ -378,7 +385,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
 /* The frames do not overlap in the interval. Looks at its ends. */
 static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = 0.5 * (interval.lo + interval.hi);
+    const double middle = middle_of(interval);
     const bool rests = decision->outcome == TURN_REST;
     const enum fmb_verdict at_lo = verdict_at(decision, interval.lo);
     const enum fmb_verdict at_hi = at_lo ? verdict_at(decision, interval.hi) : 0;
