@@ -21,7 +21,7 @@
 #include "workers.h"
 #include "world.h"
 
-enum { ALL = FMB_WANT_TIMES | FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT, LOOKS = 7, WHY = 120 };
+enum { ALL = FMB_WANT_TIMES | FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT, LOOKS = 8, WHY = 120 };
 
 static const long usual_pairs = 1000;
 
@@ -281,7 +281,7 @@ static const char *gap_fault(const struct pair *pair, enum fmb_verdict verdict,
     mpq_init(at);
     share_of(gap->time, pair->duration, at);
     moment.at = at;
-    if (verdict == FMB_SEPARATED && !gap_check_lower(&moment, gap->frame[0], gap->frame[1], gap))
+    if (verdict != FMB_TOUCHING && !gap_check_lower(&moment, gap->frame[0], gap->frame[1], gap))
         fault = "gap: the direction does not prove the lower bound at its time";
     else if (verdict == FMB_SEPARATED &&
              !gap_check_upper(&moment, gap->frame[0], gap->frame[1], gap))
@@ -343,6 +343,8 @@ static const char *look(struct draw *draw, const struct trial *trial,
             share_of(answer->gap.time, pair->duration, at);
         else if (i == 5)
             mpq_set_d(at, least);
+        else if (deep && i == 6)
+            share_of(answer->gap.time, T, at);
         struct turning_truth one;
         turning_init(&one);
         const enum fmb_verdict verdict = turning_look(pair, at, truth->whole ? &one : truth);
@@ -356,9 +358,10 @@ static const char *look(struct draw *draw, const struct trial *trial,
         if (answer->has_gap && !fault && !(large && verdict == FMB_OVERLAPPING) &&
             compare_gap(&moment, answer->gap.bounds[0]) < 0 && answer->verdict != FMB_TOUCHING)
             fault = "a smaller gap at some time";
-        if (deep && i == 5 && !large && !fault &&
+        /* The time is rounded: up to the limit. */
+        if (deep && i == 6 && !large && !fault &&
             compare_gap(&moment, answer->gap.bounds[1] + 1e-12 * size_of(pair, true)) > 0)
-            fault = "gap: they are nowhere as deep";
+            fault = "gap: they are not as deep at its time";
         if (answer->has_box && verdict != FMB_SEPARATED && !large && !fault)
             fault = box_fault(&moment, answer->box);
     }
