@@ -294,7 +294,7 @@ setup() {
 
 @test "a recording plays queries that alternate together, with the gap over time" {
     found '.stack.bodies == [16, 16, 16, 16, 16, 16, 16, 16] and .stack.lane == ["overlapping"]' \
-        '.stack.gap and .stack.gapSaid == "gap of 1 – 12 over time, in the scene'"'"'s unit of length, dashed: margin: -0.208034 to -0.146024" and .stack.plot.dark > 300' \
+        '.stack.gap and .stack.gapSaid == "gap of 1 – 12: -0.208034 to -0.146024, in the scene'"'"'s unit of length, over time; dashed: the margin" and .stack.plot.dark > 300 and .stack.plot.blue > 1000' \
         '(.stack.facts.query | startswith("event 0 at byte 0 of ")) and (.stack.facts["answered again"] | startswith("119 separated, 1 overlapping, by certified"))'
 }
 

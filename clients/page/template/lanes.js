@@ -126,11 +126,11 @@ function drawOverview() {
 
 /* ---- The gap of the chosen pair ---- */
 
-/* [[s, gap], ...] of a row; then: of the first of two answers. */
+/* [[s, gap, end], ...] of a row, end: until when it holds; then: of the first of two answers. */
 function gapsOf(row, then = false) {
     return row.at.flatMap((i, mark) => {
         const gap = (then ? row.pairs[mark][2] : nowOf(row.pairs[mark])).gap;
-        return gap && gap[0] !== null ? [[begins[i], gap[0]]] : [];
+        return gap && gap[0] !== null ? [[begins[i], gap[0], spansOf(row, mark).pop()[1]]] : [];
     });
 }
 
@@ -148,8 +148,8 @@ function drawGap(row) {
         to.setLineDash(dash);
         to.lineWidth = dash.length ? 1 : 1.6;
         to.beginPath();
-        /* where answers without a gap lie in between, the line is broken */
-        points.forEach(([s, gap], k) => to[k === 0 || s - points[k - 1][0] > 3 * Math.max(usualPause, wholeSpan / 500) ? "moveTo" : "lineTo"](x(s), y(gap)));
+        /* where a gap does not hold until the next one, the line is broken */
+        points.forEach(([s, gap], k) => to[k === 0 || s - points[k - 1][2] > 1e-9 * wholeSpan ? "moveTo" : "lineTo"](x(s), y(gap)));
         to.stroke();
     };
     drawTicks(to, width, height - 16);
@@ -169,6 +169,6 @@ function drawGap(row) {
         if (gaps.length < 200)
             to.fillRect(x(s) - 1.5, y(gap) - 1.5, 3, 3);
     });
-    one("gap-said").textContent = `gap of ${row.name} over time, in the scene's unit of length${margin ? ", dashed: margin" : ""}${
-        row.differs ? `, dashed in colour: ${data.sides[0]}` : ""}: ${interval(Math.min(...gaps.map(([, gap]) => gap)), Math.max(...gaps.map(([, gap]) => gap)))}`;
+    one("gap-said").textContent = `gap of ${row.name}: ${interval(Math.min(...gaps.map(([, gap]) => gap)), Math.max(...gaps.map(([, gap]) => gap)))
+    }, in the scene's unit of length, over time${margin ? "; dashed: the margin" : ""}${row.differs ? `; dashed in colour: ${data.sides[0]}` : ""}`;
 }
