@@ -45,7 +45,7 @@ static bool set_gap(unsigned char verdict, const double *direction, const double
     const int points = 1 + 2 * dim;
     const bool separated = verdict == FMB_SEPARATED;
     if (are_none(out->bounds, 2))
-        return separated && are_none(direction, dim) && are_none(witness, points);
+        return verdict < FMB_TOUCHING && are_none(direction, dim) && are_none(witness, points);
     if (!query_has_gap(out) ||
         (verdict == FMB_TOUCHING && (out->bounds[0] != 0 || out->bounds[1] != 0)))
         return false;

@@ -184,7 +184,7 @@ static void read_gaps(struct cursor *cursor, struct scene_result *out)
         cursor_fail(cursor, "gaps of another dimension than boxes or points");
     out->dim = dim > 0 ? dim : out->dim;
     for (int32_t i = 0; i < count && out->names_pairs && !cursor->error; i++)
-        if (out->verdict[i] < FMB_TOUCHING && !(out->has_gaps && query_has_gap(&out->gap[i])))
+        if (out->verdict[i] == FMB_SEPARATED && !(out->has_gaps && query_has_gap(&out->gap[i])))
             cursor_fail(cursor, "a pair that neither meets nor is near");
 }
 

@@ -112,7 +112,7 @@ static struct check_context *at(struct answer_job *job, int32_t i)
 
 /* ---- Checking ---- */
 
-static bool check_placements(struct answer_job *job)
+static bool check_placements(struct answer_job *job, double duration)
 {
     for (int32_t i = 0; i < job->placement_count; i++) {
         const struct query_placement *placement = &job->placements[i];
@@ -120,6 +120,8 @@ static bool check_placements(struct answer_job *job)
             return false;
         if (!job->is_pair && placement->body.dim != job->placements[0].body.dim)
             return check_refuse(at(job, i), FMB_DIMENSIONS_DIFFER, "dim", NULL);
+        if (placement->placed.end_count > 0 && duration == 0)
+            return check_refuse(at(job, i), FMB_BAD_DURATION, "num_end_pose", "the duration is 0");
     }
     return true;
 }
@@ -131,7 +133,7 @@ static bool check_pair(struct answer_job *job)
     return check_ids(context, query->client_id, query->sequence_number) &&
            check_request(context, query->duration, query->method, query->want,
                          FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP | FMB_WANT_POINT) &&
-           check_placements(job) &&
+           check_placements(job, query->duration) &&
            (query->placement[0].body.dim == query->placement[1].body.dim ||
             check_refuse(at(job, -1), FMB_DIMENSIONS_DIFFER, "dim", NULL));
 }
@@ -284,7 +286,8 @@ static bool check_scene(struct answer_job *job)
            check_margin(context, query) &&
            check_request(context, query->duration, query->method, want,
                          FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT) &&
-           check_counts(context, query) && check_which(context, query) && check_placements(job) &&
+           check_counts(context, query) && check_which(context, query) &&
+           check_placements(job, query->duration) &&
            check_indices(at(job, -1), "indices", query->pair, query->index_count / 2,
                          query->placement_count) &&
            check_indices(context, "ignored", query->ignored, query->ignored_count / 2,
@@ -389,12 +392,16 @@ static bool find_one(struct answer_job *job, int32_t i)
     return count_frames(job, i, cached->body.frame_count);
 }
 
-/* If a certificate is wanted, both bodies must have one frame. */
+/* If a certificate is wanted, both bodies must have one frame, and no end. */
 static bool check_certificate(struct answer_job *job)
 {
-    return !job->is_pair || !(job->pair.want & FMB_WANT_CERTIFICATE) || job->frames == 2 ||
+    if (!job->is_pair || !(job->pair.want & FMB_WANT_CERTIFICATE))
+        return true;
+    const bool ends = job->placements[0].placed.end_count || job->placements[1].placed.end_count;
+    return (job->frames == 2 && !ends) ||
            check_refuse(at(job, -1), FMB_CANNOT_DECIDE, "want",
-                        "a certificate is for bodies of one frame");
+                        job->frames == 2 ? "a certificate is for bodies without an end pose"
+                                         : "a certificate is for bodies of one frame");
 }
 
 /* Finds the body of placement i, which has frames; or makes it, at most *frames frames a call, and

@@ -146,23 +146,47 @@ static bool check_name(struct check_context *context, const char *name)
     return !name || query_name_ok(name) || check_refuse(context, FMB_BAD_NAME, "name", NULL);
 }
 
-/* Applies the engine's rule for orientations, which depends on the dimension of the body only: any
- * body of that dimension will do. */
-static bool check_orientation(struct check_context *context, int dim,
-                              const struct fmb_placement *placed)
+/* Whether the engine accepts these orientations. Its rules depend on the dimension of the body
+ * only: any body of that dimension will do. */
+static bool are_orientations(int dim, const struct fmb_placement *placed, int end_count)
 {
     static const struct fmb_body any[FMB_DIM_MAX + 1] = {
         [2] = {.dim = 2, .frame_count = 1}, [3] = {.dim = 3, .frame_count = 1}};
-    if (placed->orientation_count == 0)
+    struct fmb_placement turned = *placed;
+    turned.body = &any[dim];
+    turned.end_count = end_count;
+    memset(turned.velocity, 0, sizeof turned.velocity);
+    return fmb_placement_check(&turned) == FMB_OK;
+}
+
+/* On input: the position has been checked. */
+static bool check_orientation(struct check_context *context, int dim,
+                              const struct fmb_placement *placed)
+{
+    return placed->orientation_count == 0 ||
+           (check_count(context, "num_orientation", dim == 2 ? 2 : 4, placed->orientation_count) &&
+            (are_orientations(dim, placed, 0) ||
+             check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
+                          "zero, not finite, or components that differ by more than 2^200")));
+}
+
+/* On input: all other fields have been checked. */
+static bool check_end(struct check_context *context, int dim,
+                      const struct query_placement *placement)
+{
+    const struct fmb_placement *placed = &placement->placed;
+    if (placed->end_count == 0)
         return true;
-    if (!check_count(context, "num_orientation", dim == 2 ? 2 : 4, placed->orientation_count))
+    if (placement->velocity_count > 0)
+        return check_refuse(context, FMB_WRONG_COUNT, "num_end_pose", "a velocity too");
+    if (!check_count(context, "num_end_pose", dim + placed->orientation_count, placed->end_count))
         return false;
-    struct fmb_placement turned = {.body = &any[dim],
-                                   .orientation_count = placed->orientation_count};
-    memcpy(turned.orientation, placed->orientation, sizeof turned.orientation);
-    return fmb_placement_check(&turned) == FMB_OK ||
-           check_refuse(context, FMB_BAD_ORIENTATION, "orientation",
-                        "zero, not finite, or components that differ by more than 2^200");
+    for (int i = 0; i < placed->end_count; i++)
+        if (!isfinite(i < dim ? placed->end_position[i] : placed->end_orientation[i - dim]))
+            return check_refuse_at(context, FMB_NOT_FINITE, "end_pose", i, NULL);
+    return are_orientations(dim, placed, placed->end_count) ||
+           check_refuse(context, FMB_BAD_ORIENTATION, "end_pose",
+                        "no orientation, half a turn away, or not from 1/4 to 4 times as long");
 }
 
 bool check_placement(struct check_context *context, const struct query_placement *placement)
@@ -183,8 +207,7 @@ bool check_placement(struct check_context *context, const struct query_placement
            (placement->velocity_count == 0 ||
             (check_count(context, "num_velocity", dim, placement->velocity_count) &&
              check_finite(context, "velocity", placed->velocity, dim))) &&
-           (placed->end_count == 0 ||
-            check_refuse(context, FMB_NOT_SUPPORTED, "num_end_pose", "not supported yet"));
+           check_end(context, dim, placement);
 }
 
 /* ---- Queries ---- */

@@ -365,11 +365,40 @@ static void unknown_shapes_and_dimensions_are_refused(void **state)
     REFUSED(set_geometry(&query, 0, 2, 1, FMB_CUBOID, 6), FMB_DIMENSIONS_DIFFER, "dim: a 2D body against a 3D one");
 }
 
-/* What messages can say, but this version does not do. */
-static void ends_are_not_supported(void **state)
+/* Gives a placement an end pose of this orientation; a missing begin is not turned. */
+static void set_end(struct query_placement *placement, const double q[4])
 {
-    for (int k = 1; k <= 7; k++)
-        REFUSED(a->placed.end_count = k, FMB_NOT_SUPPORTED, "a.num_end_pose: not supported yet");
+    struct fmb_placement *placed = &placement->placed;
+    const int dim = placement->body.dim;
+    placed->orientation_count = 2 * dim - 2;
+    placed->orientation[0] += placed->orientation[0] == 0;
+    placed->end_count = 3 * dim - 2;
+    memcpy(placed->end_position, placed->position, sizeof placed->position);
+    memcpy(placed->end_orientation, q, (size_t) placed->orientation_count * sizeof *q);
+}
+
+static void bad_ends_are_refused(void **state)
+{
+    static const char detail[] = "a.end_pose: no orientation, half a turn away, or not from 1/4 to 4 times as long";
+    const double turned[4] = {1, 0, 0, 1}, bad[][4] = {{0, 0, 0, 0}, {0, 0, 0, 1}, {4.000000000000001, 0, 0, 0},
+        {0.24999999999999997, 0, 0, 0}, {1, 0, 0x1p-201, 0}, {0, 1, 1e-3, 1e200}};
+    for (size_t i = 0; i < COUNT(bad); i++)
+        REFUSED(set_end(a, bad[i]), FMB_BAD_ORIENTATION, detail);
+    REFUSED(set_end(a, turned); a->placed.end_orientation[2] = NAN, FMB_NOT_FINITE, "a.end_pose[5]: not a finite number");
+    REFUSED(set_end(a, turned); a->placed.end_position[1] = -INFINITY, FMB_NOT_FINITE, "a.end_pose[1]: not a finite number");
+    for (int k = 1; k <= 6; k++) {
+        char text[60];
+        snprintf(text, sizeof text, "b.num_end_pose: expected 7 numbers, found %d", k);
+        REFUSED(set_end(b, turned); b->placed.end_count = k, FMB_WRONG_COUNT, text);
+    }
+    REFUSED(set_end(b, turned); b->placed.orientation_count = 0, FMB_WRONG_COUNT, "b.num_end_pose: expected 3 numbers, found 7");
+    REFUSED(set_end(b, turned); b->velocity_count = 3, FMB_WRONG_COUNT, "b.num_end_pose: a velocity too");
+    REFUSED(set_end(b, turned); query.duration = 0, FMB_BAD_DURATION, "b.num_end_pose: the duration is 0");
+    REFUSED(set_end(b, turned); query.want = FMB_WANT_CERTIFICATE, FMB_CANNOT_DECIDE,
+            "want: a certificate is for bodies without an end pose");
+    REFUSED(query = squares(); set_end(a, (double[4]){0, 1}), FMB_BAD_ORIENTATION, detail);
+    REFUSED(query = squares(); set_end(a, turned); a->placed.end_count = 5, FMB_WRONG_COUNT,
+            "a.num_end_pose: expected 4 numbers, found 5");
 }
 
 /* The second body is a rounded cube of which number k is this one. */
@@ -645,11 +674,8 @@ static void bad_sizes_are_refused(void **state)
 static struct fmb_placement placement_of(struct query_bodies *own,
                                          const struct query_placement *from)
 {
-    struct fmb_placement out = {.body = body_make(&from->body, own->memory),
-                                .orientation_count = from->placed.orientation_count};
-    memcpy(out.position, from->placed.position, sizeof from->placed.position);
-    memcpy(out.velocity, from->placed.velocity, sizeof from->placed.velocity);
-    memcpy(out.orientation, from->placed.orientation, sizeof from->placed.orientation);
+    struct fmb_placement out = from->placed;
+    out.body = body_make(&from->body, own->memory);
     return out;
 }
 
@@ -713,6 +739,37 @@ static void bodies_of_several_frames_are_answered(void **state)
         }
     assert_int_equal(counts().misses, 1); /* both have the same frames */
     assert_int_equal(counts().frames, 7);
+}
+
+/* Whole and by handle, by methods that take them: what the engine says, or that it says nothing. */
+static void ends_are_answered(void **state)
+{
+    static const double ends[][4] = {{1, 0, 0, 0}, {2, 0, 0, 1}, {-1, 0.5, 0, 0}};
+    for (int i = 0; i < 3 * 6; i++) {
+        struct pair_query query = i % 2 ? gratings(3, 2, 3) : cubes();
+        struct query_placement *b = &query.placement[1];
+        static struct query_bodies own[2];
+        struct fmb_answer expected;
+        query.method = (int) (i / 6);
+        query.want = FMB_WANT_BOX | FMB_WANT_POINT | (query.method < 2 ? FMB_WANT_GAP : 0);
+        b->velocity_count = 0;
+        b->placed.velocity[1] = 0;
+        b->placed.position[2] = 1.25;
+        set_end(b, ends[i / 2 % 3]);
+        b->placed.end_position[2] = 0.75;
+        const struct fmb_placement pair[2] = {placement_of(&own[0], &query.placement[0]),
+                                              placement_of(&own[1], b)};
+        const enum fmb_status status = fmb_decide(
+            fmb_method_by_number(query.method), &pair[0], &pair[1], query.duration,
+            (unsigned) query.want & ~(query.method < 2 ? 0u : FMB_WANT_POINT), &expected);
+        for (int by_handle = 0; by_handle < 2; by_handle++) {
+            const struct pair_result result = answer_to(&query);
+            assert_int_equal(result.status, status);
+            assert_memory_equal(&result.answer, &expected, sizeof expected);
+            for (int f = 0; f < 2 && status == FMB_OK && !by_handle; f++)
+                name(&query.placement[f], &result.handle[f]);
+        }
+    }
 }
 
 /* A cube with a radius, above one without: of body coordinates and numbers, in body and by handle.
@@ -986,7 +1043,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(bodies_of_several_frames_have_no_certificate, set_up_many,
                                         tear_down),
         TEST(a_body_larger_than_the_cache_is_answered),
-        TEST(ends_are_not_supported),
+        TEST(bad_ends_are_refused),
+        cmocka_unit_test_setup_teardown(ends_are_answered, set_up_many, tear_down),
         TEST(bad_radii_are_refused),
         TEST(bad_requests_are_refused),
         TEST(refused_without_being_read),
