@@ -56,11 +56,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Edge", "Error", "OVERLAPPING", "Path",
            "SEPARATED", "Robot", "Rows", "Scene", "TOUCHING", "Verdict", "box", "capsule", "compound", "cuboid",
-           "cylinder", "face", "hull", "sphere", "status_text", "tetrahedron", "version"]
+           "cylinder", "face", "hull", "normalized", "sphere", "status_text", "tetrahedron", "version"]
 
 # ---- The libraries: fmb_flat.h, fmb_robot.h, and structs of fmb.h ----
 
-_ABI = 2
+_ABI = 3
 # The installed module names the libraries of its version.
 _SONAME = "libfmb-client.so"
 _ROBOT_SONAME = "libfmb-robot.so"
@@ -162,7 +162,7 @@ _lib = _load(
     ("fmb_flat_placements", ctypes.POINTER(_Placement), _POINTER),
     ("fmb_flat_take", None, _POINTER, _POINTER, _SIZE),
     ("fmb_flat_why", _TEXT, _POINTER),
-    ("fmb_flat_place", _INT, _POINTER, _SIZE, _SIZE, _POINTER, _POINTER, _POINTER),
+    ("fmb_flat_place", _INT, _POINTER, _SIZE, _SIZE, *5 * (_POINTER,)),
     ("fmb_flat_pair", _INT, _POINTER, _POINTER, _LONG, _LONG, _REAL, _INT),
     ("fmb_flat_decide", _INT, _POINTER, _POINTER, _REAL, _INT, _INT, _REAL, _LONG, _POINTER, _SIZE, _POINTER, _SIZE,
      _TEXT),
@@ -207,7 +207,7 @@ def _error(status: int, message: str) -> Exception:
     return (BusError if status < 0 else Error)(message, status)
 
 
-_OF_SCENES = "Scene() takes poses, velocities, names, groups and ids; place() and move() change poses"
+_OF_SCENES = "Scene() takes poses, velocities, ends, names, groups and ids; place() and move() change poses"
 
 
 class _Handle:
@@ -841,14 +841,37 @@ def _advice(status: int, client: Optional[Client]) -> str:
 # ---- Scenes ----
 
 
+def normalized(orientations: Array) -> Any:
+    """Returns orientations (n, 4), in 2D (n, 2), with the length 1, up to rounding.
+
+    An orientation stands for the same rotation at any length, but between orientations of different lengths
+    a body turns unevenly. Raises ValueError if one is all 0 or not finite.
+    """
+    view, shape = _flat("orientations", orientations, "d", ("n", "4"))
+    flat, out = view.cast("B").cast("d"), array("d")
+    for k in range(0, len(flat), shape[1] if len(flat) else 1):
+        row = flat[k:k + shape[1]]
+        largest = max(map(abs, row))
+        if not 0 < largest < math.inf:
+            raise ValueError(f"orientations[{k // shape[1]}]: expected finite numbers that are not all 0")
+        length = math.hypot(*(x / largest for x in row))
+        out.extend(x / largest / length for x in row)
+    if not out:
+        return view if numpy is None else numpy.empty(shape)
+    scaled = memoryview(out).cast("B").cast("d", shape)
+    return Rows(scaled) if numpy is None else numpy.array(scaled)
+
+
 class Scene(_Handle):
-    """Placed bodies. place() and move() change their poses and velocities between queries; all else is
-    fixed.
+    """Placed bodies. place() and move() change their poses and motions between queries; all else is fixed.
 
     bodies: n bodies of one dimension; a body may be placed several times
     positions: (n, dim), world coordinates of the origins of the bodies at time 0; None: 0
     orientations: (n, 4), (w, x, y, z), in 2D (n, 2), (w, z); None: not rotated
     velocities: (n, dim), per second; None: at rest
+    end_positions, end_orientations: the poses at the end of the window, in place of velocities: the bodies
+        turn by less than half a turn. Give quaternions of equal lengths, as normalized() returns them:
+        with others, a body turns unevenly. If only one of the two is given, bodies do not move, or turn
     names: n texts of at most 64 bytes of UTF-8; any of them may be None
     groups: (n,) int64; bodies of one group other than 0 are not tested against each other
     ids: (n,) int64, 1 to 2^53 - 1, under which the service caches the bodies; 0: it does not;
@@ -860,6 +883,7 @@ class Scene(_Handle):
 
     def __init__(self, bodies: Iterable[Body], *, positions: Optional[Array] = None,
                  orientations: Optional[Array] = None, velocities: Optional[Array] = None,
+                 end_positions: Optional[Array] = None, end_orientations: Optional[Array] = None,
                  names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
                  ids: Optional[Array] = None, ignored: Optional[Array] = None) -> None:
         self._lock = threading.Lock()
@@ -884,7 +908,7 @@ class Scene(_Handle):
         self._robot: Any = None
         self._handle = handle.value
         self._check(status)
-        self.place(positions, orientations, velocities)
+        self.place(positions, orientations, velocities, end_positions, end_orientations)
 
     @staticmethod
     def from_json(path: Union[str, os.PathLike]) -> Scene:
@@ -916,31 +940,39 @@ class Scene(_Handle):
                          (": pass instant=True" if why.endswith(" moves") else ""))
 
     def place(self, positions: Optional[Array] = None, orientations: Optional[Array] = None,
-              velocities: Optional[Array] = None) -> None:
-        """Sets positions (n, dim), orientations (n, 4), in 2D (n, 2), and velocities (n, dim) of all
-        bodies; None: unchanged."""
+              velocities: Optional[Array] = None, end_positions: Optional[Array] = None,
+              end_orientations: Optional[Array] = None) -> None:
+        """Sets positions (n, dim), orientations (n, 4), in 2D (n, 2), and velocities (n, dim) or the poses
+        at the end of the window, of all bodies; None: unchanged. Velocities remove ends, and ends remove
+        velocities."""
         n = len(self.bodies)
-        self._place(0, n, (n,), positions=positions, orientations=orientations,
-                    velocities=velocities)
+        self._place(0, n, (n,), positions=positions, orientations=orientations, velocities=velocities,
+                    end_positions=end_positions, end_orientations=end_orientations)
 
-    def move(self, index: int, position: Optional[Array] = None,
-             orientation: Optional[Array] = None, velocity: Optional[Array] = None) -> None:
-        """Sets position (dim,), orientation (4,), in 2D (2,), and velocity (dim,) of one body; None:
-        unchanged."""
+    def move(self, index: int, position: Optional[Array] = None, orientation: Optional[Array] = None,
+             velocity: Optional[Array] = None, end_position: Optional[Array] = None,
+             end_orientation: Optional[Array] = None) -> None:
+        """Sets position (dim,), orientation (4,), in 2D (2,), and velocity (dim,), or the pose at the end of
+        the window, of one body; None: unchanged."""
         index = _int("index", index)
         if not 0 <= index < len(self.bodies):
             raise IndexError(f"index: there is no body {index}")
-        self._place(index, 1, (), position=position, orientation=orientation, velocity=velocity)
+        self._place(index, 1, (), position=position, orientation=orientation, velocity=velocity,
+                    end_position=end_position, end_orientation=end_orientation)
 
     def _place(self, first: int, count: int, rows: tuple, **poses: Any) -> None:
-        widths = (self.dim, 2 if self.dim == 2 else 4, self.dim)
+        turn = 2 if self.dim == 2 else 4
+        widths = (self.dim, turn, self.dim, self.dim, turn)
         pointers = [None if value is None else _pointer(_flat(name, value, "d", rows + (width,))[0])
                     for (name, value), width in zip(poses.items(), widths)]
+        ends = [name for name, pointer in zip(poses, pointers) if pointer is not None and name[:4] == "end_"]
+        if pointers[2] is not None and ends:
+            raise ValueError(f"{list(poses)[2]}: not with {ends[0]}")
         with self._lock:
             status = _lib.fmb_flat_place(self._handle, first, count, *pointers)
             if status and not rows:  # "positions[0]: ..." is about position
                 argument, _, text = _lib.fmb_flat_why(self._handle).decode().partition("[0]")
-                raise _error(status, next(n for n in poses if n[:4] == argument[:4]) + text)
+                raise _error(status, next(n for n in poses if n[:7] == argument[:7]) + text)
             self._check(status)
 
     def pair(self, a: int, b: int, duration: float, *, box: bool = False, point: bool = False,
@@ -1013,12 +1045,15 @@ class Scene(_Handle):
 
     def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,
                orientations: Optional[Iterable[Array]] = None,
-               velocities: Optional[Iterable[Array]] = None, **options: Any) -> Iterator[Answers]:
-        """Yields the answers of one scene after the other. positions, orientations and velocities are as
-        for place(), with one more axis in front, that of the scenes; or they are iterables of such
-        arrays. options are those of decide()."""
+               velocities: Optional[Iterable[Array]] = None,
+               end_positions: Optional[Iterable[Array]] = None,
+               end_orientations: Optional[Iterable[Array]] = None, **options: Any) -> Iterator[Answers]:
+        """Yields the answers of one scene after the other. positions to end_orientations are as for place(),
+        with one more axis in front, that of the scenes; or they are iterables of such arrays. options are
+        those of decide()."""
         given = {name: _iterate(name, values) for name, values in (
-            ("positions", positions), ("orientations", orientations), ("velocities", velocities))
+            ("positions", positions), ("orientations", orientations), ("velocities", velocities),
+            ("end_positions", end_positions), ("end_orientations", end_orientations))
             if values is not None}
         for poses in itertools.zip_longest(*given.values()):
             for name, pose in zip(given, poses):

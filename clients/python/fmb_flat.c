@@ -243,20 +243,58 @@ const char *fmb_flat_why(const struct fmb_flat_scene *scene)
     return scene->why;
 }
 
-/* Returns a placement with the pose and velocity of row i of the arrays. */
+/* The arrays of fmb_flat_place(). */
+struct rows {
+    const double *positions, *orientations, *velocities, *end_positions, *end_orientations;
+};
+
+static void set_orientation(const double *orientations, size_t i, int count, double out[4])
+{
+    memcpy(out, orientations + i * (size_t) count, (size_t) count * sizeof *out);
+}
+
+/* Sets the end of a placement whose other rows are set. A part that it had not is as at the begin.
+ */
+static void set_end(const struct rows *rows, size_t i, int dim, struct fmb_placement *out)
+{
+    const int turns = dim == 2 ? 2 : 4;
+    if (out->end_count == 0) {
+        memcpy(out->end_position, out->position, sizeof out->end_position);
+        memset(out->velocity, 0, sizeof out->velocity);
+    }
+    if (out->end_count <= dim)
+        memcpy(out->end_orientation, out->orientation, sizeof out->end_orientation);
+    if (rows->end_positions)
+        memcpy(out->end_position, rows->end_positions + i * (size_t) dim,
+               (size_t) dim * sizeof(double));
+    if (rows->end_orientations) {
+        if (out->orientation_count == 0)
+            out->orientation[0] = 1;
+        out->orientation_count = turns;
+        set_orientation(rows->end_orientations, i, turns, out->end_orientation);
+    }
+    out->end_count = dim + out->orientation_count;
+}
+
+/* Returns a placement with the pose, and the velocity or the end, of row i of the arrays. */
 static struct fmb_placement with_row(const struct fmb_flat_scene *scene, size_t placement, size_t i,
-                                     const double *positions, const double *orientations,
-                                     const double *velocities)
+                                     const struct rows *rows)
 {
     struct fmb_placement out = scene->placements[placement];
-    const size_t dim = (size_t) scene->dim, turns = dim == 2 ? 2 : 4;
-    if (positions)
-        memcpy(out.position, positions + i * dim, dim * sizeof(double));
-    if (velocities)
-        memcpy(out.velocity, velocities + i * dim, dim * sizeof(double));
-    if (orientations) {
-        memcpy(out.orientation, orientations + i * turns, turns * sizeof(double));
-        out.orientation_count = (int) turns;
+    const size_t dim = (size_t) scene->dim;
+    if (rows->positions)
+        memcpy(out.position, rows->positions + i * dim, dim * sizeof(double));
+    if (rows->orientations) {
+        out.orientation_count = dim == 2 ? 2 : 4;
+        set_orientation(rows->orientations, i, out.orientation_count, out.orientation);
+    }
+    if (rows->velocities) {
+        memcpy(out.velocity, rows->velocities + i * dim, dim * sizeof(double));
+        memset(out.end_position, 0, sizeof out.end_position);
+        memset(out.end_orientation, 0, sizeof out.end_orientation);
+        out.end_count = 0;
+    } else if (rows->end_positions || rows->end_orientations || out.end_count > 0) {
+        set_end(rows, i, scene->dim, &out);
     }
     return out;
 }
@@ -271,25 +309,35 @@ static void set_moved(struct fmb_flat_scene *scene, size_t end)
     scene->moved = end > scene->moved ? end : scene->moved;
 }
 
-int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
-                   const double *positions, const double *orientations, const double *velocities)
+/* Returns the name of the array in which the engine refuses a placement. */
+static const char *wrong_array(const struct fmb_placement *placed)
 {
+    struct fmb_placement begin = *placed;
+    begin.end_count = 0;
+    return !is_finite(placed->position)            ? "positions"
+           : !is_finite(placed->velocity)          ? "velocities"
+           : fmb_placement_check(&begin) != FMB_OK ? "orientations"
+           : !is_finite(placed->end_position)      ? "end_positions"
+                                                   : "end_orientations";
+}
+
+int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
+                   const double *positions, const double *orientations, const double *velocities,
+                   const double *end_positions, const double *end_orientations)
+{
+    const struct rows rows = {positions, orientations, velocities, end_positions, end_orientations};
     if (first > scene->placement_count || count > scene->placement_count - first)
         return refuse(scene, FMB_BAD_PAIR, "placements", first);
+    if (velocities && (end_positions || end_orientations))
+        return refuse(scene, FMB_WRONG_COUNT, "velocities", 0);
     for (size_t i = 0; i < count; i++) {
-        const struct fmb_placement placed =
-            with_row(scene, first + i, i, positions, orientations, velocities);
+        const struct fmb_placement placed = with_row(scene, first + i, i, &rows);
         const enum fmb_status status = fmb_placement_check(&placed);
         if (status != FMB_OK)
-            return refuse(scene, (int) status,
-                          !is_finite(placed.position)   ? "positions"
-                          : !is_finite(placed.velocity) ? "velocities"
-                                                        : "orientations",
-                          i);
+            return refuse(scene, (int) status, wrong_array(&placed), i);
     }
     for (size_t i = 0; i < count; i++)
-        scene->placements[first + i] =
-            with_row(scene, first + i, i, positions, orientations, velocities);
+        scene->placements[first + i] = with_row(scene, first + i, i, &rows);
     set_moved(scene, first + count);
     return FMB_OK;
 }
@@ -306,6 +354,9 @@ void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *fro
         memcpy(to->position, from[i].position, sizeof to->position);
         memcpy(to->orientation, from[i].orientation, sizeof to->orientation);
         to->orientation_count = from[i].orientation_count;
+        memcpy(to->end_position, from[i].end_position, sizeof to->end_position);
+        memcpy(to->end_orientation, from[i].end_orientation, sizeof to->end_orientation);
+        to->end_count = from[i].end_count;
     }
     set_moved(scene, count);
 }

@@ -24,7 +24,7 @@ extern "C" {
 
 /* The number of this interface. It is raised when a function changes or is removed. fmb_flat_abi()
  * returns the number of the library. */
-enum { FMB_FLAT_ABI = 2 };
+enum { FMB_FLAT_ABI = 3 };
 int fmb_flat_abi(void);
 
 /* ---- Bodies ---- */
@@ -74,8 +74,8 @@ void fmb_flat_scene_free(struct fmb_flat_scene *scene); /* may be NULL */
 /* Returns the placements. */
 const struct fmb_placement *fmb_flat_placements(const struct fmb_flat_scene *scene);
 
-/* Copies the poses of the first count elements of such an array to the placements of the scene.
- * They must be valid. */
+/* Copies poses and ends of the first count elements of such an array to the placements of the
+ * scene. They must be valid. */
 void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *placements,
                    size_t count);
 
@@ -87,13 +87,19 @@ void fmb_flat_scene_forked(struct fmb_flat_scene *scene);
 /* Returns what was wrong in the last call that failed: "positions[3]: not a finite number". */
 const char *fmb_flat_why(const struct fmb_flat_scene *scene);
 
-/* Sets poses and velocities of placements first to first + count - 1; changes none after an error.
- * In:  positions     [count][dim], or NULL: unchanged
- *      orientations  [count][4], in 2D [count][2], or NULL: unchanged
- *      velocities    [count][dim], per second, or NULL: unchanged
- * Returns FMB_OK, FMB_NOT_FINITE, FMB_BAD_ORIENTATION, or FMB_BAD_PAIR (no such placements). */
+/* Sets poses and motions of placements first to first + count - 1; changes none after an error.
+ * Velocities take away the ends of these placements; ends take away their velocities. A part of the
+ * end that was never set is the one at the begin.
+ * In:  positions         [count][dim], or NULL: unchanged
+ *      orientations      [count][4], in 2D [count][2], or NULL: unchanged
+ *      velocities        [count][dim], per second, or NULL: unchanged
+ *      end_positions     [count][dim], or NULL: unchanged
+ *      end_orientations  [count][4], in 2D [count][2], or NULL: unchanged
+ * Returns FMB_OK, FMB_NOT_FINITE, FMB_BAD_ORIENTATION, FMB_WRONG_COUNT (velocities and ends), or
+ * FMB_BAD_PAIR (no such placements). */
 int fmb_flat_place(struct fmb_flat_scene *scene, size_t first, size_t count,
-                   const double *positions, const double *orientations, const double *velocities);
+                   const double *positions, const double *orientations, const double *velocities,
+                   const double *end_positions, const double *end_orientations);
 
 struct fmb_client;
 

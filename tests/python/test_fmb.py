@@ -122,6 +122,15 @@ def of_json(pair):
     return out
 
 
+def placed_of(scene):
+    """Position, velocity, orientation and its count, the same of the end, of each body."""
+    dim = scene.dim
+    turns = 2 if dim == 2 else 4
+    return [(tuple(p.position[:dim]), tuple(p.velocity[:dim]), tuple(p.orientation[:turns]), p.orientation_count,
+             tuple(p.end_position[:dim]), tuple(p.end_orientation[:turns]), p.end_count)
+            for p in fmb._lib.fmb_flat_placements(scene._handle)[:len(scene)]]
+
+
 WANTED = {"contacts": True, "boxes": True, "points": True, "gaps": True}
 
 
@@ -269,6 +278,66 @@ class Answers(unittest.TestCase):
         self.assertEqual([answers[0].contact for answers in falling], [None, (0.5, 1)])
         with self.assertRaisesRegex(ValueError, "^velocities: "):
             list(scene.stream(0, steps, velocities=[], client=self.client))
+
+    def test_bodies_move_and_turn_to_an_end(self):
+        draw = random.Random(3)
+        for dim in (2, 3):
+            n, turns = 6, 2 if dim == 2 else 4
+            rows = lambda width: [[draw.uniform(-1, 1) for _ in range(width)] for _ in range(n)]
+            begin, end, turned = rows(dim), rows(dim), fmb.normalized(rows(turns))
+            on = [[x + 0.3 * y for x, y in zip(q, q[1:] + q[:1])] for q in map(list, turned)]
+            bodies = [fmb.box([0.5] * dim)] * n
+            scene = fmb.Scene(bodies, positions=begin, orientations=turned, end_positions=end, end_orientations=on)
+            given = [{"id": i + 1, "shape": "box", "size": [0.5] * dim, "position": list(begin[i]),
+                      "orientation": list(turned[i]), "end": {"position": list(end[i]), "orientation": on[i]}}
+                     for i in range(n)]
+            with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+                json.dump({"dim": dim, "bodies": given}, file)
+                file.flush()
+                read = fmb.Scene.from_json(file.name)
+            self.assertEqual(placed_of(read), placed_of(scene))
+            later = fmb.Scene(bodies, positions=[[9] * dim] * n, velocities=end)
+            later.place(begin, turned, end_positions=end, end_orientations=on)
+            self.assertEqual(placed_of(later), placed_of(scene))
+            pairs = list(itertools.combinations(range(n), 2))
+            answers = scene.decide(1, pairs=pairs, client=self.client, **WANTED)
+            self.assertEqual(list(answers), list(read.decide(1, pairs=pairs, **WANTED)))
+            self.assertTrue(all(status in (0, 13) for status in answers.statuses))
+            # In a window of 0 s there is no end; at an instant, bodies are where they begin.
+            with self.assertRaisesRegex(fmb.Error, "^duration: .*body 0 moves: .*instant=True"):
+                scene.decide(0, client=self.client)
+            with self.assertRaisesRegex(fmb.Error, "duration") as caught:
+                scene.pair(0, 1, 0, client=self.client)
+            self.assertEqual(caught.exception.status, 9)
+            still = fmb.Scene(bodies, positions=begin, orientations=turned)
+            self.assertEqual(list(scene.decide(0, instant=True, client=self.client)), list(still.decide(0)))
+            # The next window begins where this one ends; velocities remove ends.
+            scene.place(end, on, end_positions=begin, end_orientations=turned)
+            self.assertEqual([(p[4], p[5], p[0], p[2]) for p in placed_of(scene)],
+                             [(p[0], p[2], p[4], p[5]) for p in placed_of(read)])
+            scene.place(velocities=[[0] * dim] * n)
+            self.assertEqual(list(scene.decide(0, client=self.client)), list(
+                fmb.Scene(bodies, positions=end, orientations=on).decide(0)))
+
+    def test_what_is_missing_of_an_end_is_as_at_the_begin(self):
+        scene = fmb.Scene([fmb.box([1, 1])] * 3, positions=[[1, 2]] * 3)
+        scene.move(0, end_position=[3, 4])
+        scene.move(1, end_orientation=[3, -2])
+        self.assertEqual([p[:1] + p[2:] for p in placed_of(scene)],
+                         [((1, 2), (0, 0), 0, (3, 4), (0, 0), 2), ((1, 2), (1, 0), 2, (1, 2), (3, -2), 4),
+                          ((1, 2), (0, 0), 0, (0, 0), (0, 0), 0)])
+        scene.move(0, orientation=[0, 2])  # does not turn
+        scene.move(1, [5, 6])  # the end stays
+        self.assertEqual([p[:1] + p[2:] for p in placed_of(scene)][:2],
+                         [((1, 2), (0, 2), 2, (3, 4), (0, 2), 4), ((5, 6), (1, 0), 2, (1, 2), (3, -2), 4)])
+
+    def test_orientations_are_normalized(self):
+        for rows in ([[3, 4], [0, -5e-324]], [[1e308, 0, -1e308, 1e308], [1, 1, 1, 1]]):
+            for given, q in zip(rows, fmb.normalized(rows)):
+                largest = max(map(abs, given))
+                length = math.hypot(*(x / largest for x in given))
+                for x, y in zip(given, q):
+                    self.assertAlmostEqual(y * length, x / largest, delta=1e-15)
 
     def test_a_moving_body_needs_a_window_or_an_instant(self):
         scene = fmb.Scene([fmb.box([1, 1])] * 3, velocities=[[0, 0], [0, -1], [0, 0]])
@@ -556,6 +625,21 @@ class Arrays(unittest.TestCase):
                 (fmb.Error, "orientations[0]", lambda: scene.place(orientations=[[0, 0, 0, 0]] * 3)),
                 (ValueError, "orientations[0]", lambda: scene.place(orientations=[[1, 0]] * 3)),
                 (fmb.Error, "velocity", lambda: scene.move(1, velocity=[nan, 0, 0])),
+                (fmb.Error, "end_positions[1]", lambda: scene.place(end_positions=[[0, 0, 0], [nan, 0, 0], [0, 0, 0]])),
+                (fmb.Error, "end_orientations[2]", lambda: scene.place(end_orientations=[[1, 0, 0, 0]] * 2 + [[0, 1, 0, 0]])),
+                (fmb.Error, "end_orientations[0]", lambda: scene.place(end_orientations=[[nan, 0, 0, 0]] * 3)),
+                (fmb.Error, "orientations[0]", lambda: scene.place(orientations=[[0] * 4] * 3, end_orientations=[[1] * 4] * 3)),
+                (ValueError, "end_positions", lambda: scene.place(end_positions=[[0, 0, 0]])),
+                (ValueError, "end_orientations[0]", lambda: scene.place(end_orientations=[[1, 0]] * 3)),
+                (ValueError, "velocities: not with end_positions",
+                 lambda: scene.place(velocities=[[0, 0, 0]] * 3, end_positions=[[0, 0, 0]] * 3)),
+                (ValueError, "velocity: not with end_orientation",
+                 lambda: scene.move(1, velocity=[0, 0, 0], end_orientation=[1, 0, 0, 0])),
+                (fmb.Error, "end_position", lambda: scene.move(1, end_position=[nan, 0, 0])),
+                (fmb.Error, "end_orientation", lambda: scene.move(1, end_orientation=[5, 0, 0, 0])),
+                (ValueError, "orientations[1]", lambda: fmb.normalized([[1, 0], [0, 0]])),
+                (ValueError, "orientations[0]", lambda: fmb.normalized([[1, math.inf]])),
+                (TypeError, "orientations", lambda: fmb.normalized([1, 0, 0, 0])),
                 (fmb.Error, "orientation", lambda: scene.move(1, orientation=[0, 0, 0, 0])),
                 (ValueError, "position", lambda: scene.move(1, [0, 0])),
                 (IndexError, "index", lambda: scene.move(3, [0, 0, 0])),
