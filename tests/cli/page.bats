@@ -71,6 +71,12 @@ SCENE
   {"id": 1, "shape": "box", "size": [1,1], "orientation": [2,1], "velocity": [0.5,0]},
   {"id": 2, "shape": "tetrahedron", "position": [1,0], "origin": [0,0], "components": [[1,0],[0,1]]}]}
 SCENE
+    # Ends: a quaternion whose negative is nearer, of another length, and a position alone.
+    "$fmb" query --local --html ends.html > ends.said 2>&1 << 'SCENE' || true
+{"dim": 3, "duration": 2, "bodies": [
+  {"id": 1, "shape": "box", "size": [2,1,1], "orientation": [3,0,0,4], "end": {"position": [0,0,4], "orientation": [-8,0,0,-1]}},
+  {"id": 2, "shape": "box", "size": [2,1,1], "position": [5,0,0], "end": {"position": [5,2,0]}}]}
+SCENE
     "$fmb" query --local --html hostile.html - > hostile.said << SCENE
 {"dim": 2, "label": "$hostile", "bodies": [{"id": 1, "name": "$hostile", "shape": "box", "size": [1,1]},
   {"id": 2, "name": "\u202e\"'&amp;", "shape": "box", "size": [1,1]}]}
@@ -258,6 +264,13 @@ setup() {
         '.disc.surfaces | map(.[0]) | .[0] > 3.13 and .[0] < 3.142 and .[1] > 1.78 and .[1] < 1.786 and .[2] > 1.53 and .[2] < 1.55' \
         '.round.facing | .drawn == 256 and .shades > 15' \
         '[.round, .disc] | all(.bad == 0 and .drawn > 2000) and .[1].yellow > 100'
+}
+
+# In the middle, q = (3,0,0,4) + (8,0,0,1) = (11,0,0,5), which turns the axis x to (121 - 25, 2 * 11 * 5) / 146.
+@test "a body that turns is drawn where fmb_pose_at() has it" {
+    data ends.html | jq -e '.steps[0].bodies | map(.end) == [{position: [0,0,4], orientation: [-8,0,0,-1]}, {position: [5,2,0]}]' > /dev/null
+    found '.ends | length == 3 and .[1].text == "1.000 s" and map(.places) == [[[0, 0, 0], [5, 0, 0]], [[0, 0, 2], [5, 1, 0]], [[0, 0, 4], [5, 2, 0]]]' \
+        '.ends | map(.turn) == [[-0.28, 0.96], [0.658, 0.753], [0.969, 0.246]]'
 }
 
 @test "two dimensions are seen from above" {

@@ -52,6 +52,13 @@ function places() {
     return stage.items.map((item) => item.centre.toArray().map((x) => Math.round(x * 2 ** stage.exponent * 1e4) / 1e4));
 }
 
+/* Where the axis x of body k is, seen from above. */
+function axisOf(k) {
+    const { source: { stream: { step, part } }, surface: { corners: [corner] } } = view.fmb.stage.items[k];
+    const [from, to] = view.fmb.placed([corner.clone().set(0, 0, 0), corner.clone().set(1, 0, 0)], step, k, part);
+    return to.sub(from).toArray().slice(0, 2).map((x) => Math.round(x * 1e3) / 1e3);
+}
+
 /* Of each body: the area of its triangles, the length of its edges, and the ends of its corners on each axis, in
  * units of the page. */
 function surfaces() {
@@ -249,6 +256,13 @@ async function shapes() {
     await open("plane.html");
     await press("n");
     found.plane = { ...picture(), surfaces: surfaces(), direction: direction().map(Math.round), kinds: view.fmb.stage.items.map((item) => item.surface.triangles.length) };
+    await open("ends.html");
+    found.ends = [];
+    for (const s of [0, 1, 2]) {
+        view.fmb.seek(s);
+        await drawn();
+        found.ends.push({ ...moment(), places: places(), turn: axisOf(0) });
+    }
     await open("hostile.html");
     found.hostile = { title: page.title, table: table(), bold: all("#pairs b, #labels b").length, labels: texts("#labels span") };
     await open("empty.html");

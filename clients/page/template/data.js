@@ -31,6 +31,8 @@ function readAnswer(step, frames, { verdict, error, contact, box, point, gap, wi
     };
 }
 
+const doesMove = ({ velocity, end }) => Boolean(velocity ?? end);
+
 /* The bodies of a step without their poses; one list for all steps with the same bodies. */
 const castByKey = new Map();
 function castOf({ bodies }) {
@@ -39,7 +41,7 @@ function castOf({ bodies }) {
 }
 
 for (const step of steps) {
-    Object.assign(step, { T: step.duration, poses: step.bodies, bodies: castOf(step), moves: step.bodies.some(({ velocity }) => velocity) && step.duration > 0 });
+    Object.assign(step, { T: step.duration, poses: step.bodies, bodies: castOf(step), moves: step.bodies.some(doesMove) && step.duration > 0 });
     step.pairs = step.pairs.map(({ bodies: [a, b], then, now, frame_contacts: frames, ...answer }) =>
         [a, b, ...(then ? [then, now] : [answer]).map((each) => readAnswer(step, frames, each))]);
 }

@@ -99,4 +99,4 @@ function start() {
 start();
 
 /* For the console of a browser, and for tests. */
-globalThis.fmb = { data, steps, rows, stage, player, pace, table, view, begins, camera, drawScene, followPace, hitAt, seek };
+globalThis.fmb = { data, steps, rows, stage, player, pace, table, view, begins, camera, drawScene, followPace, hitAt, placed, seek };

@@ -26,16 +26,22 @@ const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#ed
 
 /* ---- Poses ---- */
 
-/* Quaternions of scenes may have any length. */
-function orientationOf(step, k) {
-    const given = step.poses[k].orientation ?? [1, 0, 0, 0], [w, x, y, z] = given.length === 2 ? [given[0], 0, 0, given[1]] : given;
-    const largest = Math.max(...given.map(Math.abs));
-    return new THREE.Quaternion(x / largest, y / largest, z / largest, w / largest).normalize();
+/* The orientation of body k after a part of the window, as fmb_pose_at() has it: on the line from the
+ * quaternion at the begin to the one at the end, or to its negative if that is nearer. Quaternions of scenes
+ * may have any length. */
+function orientationOf(step, k, part) {
+    const { orientation = [1, 0, 0, 0], end } = step.poses[k], ends = [orientation, end?.orientation ?? orientation];
+    const largest = Math.max(...ends.flat().map(Math.abs));
+    const [from, to] = ends.map((q) => q.map((x) => x / largest)), sign = from.reduce((dot, x, i) => dot + x * to[i], 0) < 0 ? -1 : 1;
+    const given = from.map((x, i) => (1 - part) * x + part * sign * to[i]), [w, x, y, z] = given.length === 2 ? [given[0], 0, 0, given[1]] : given;
+    return new THREE.Quaternion(x, y, z, w).normalize();
 }
 
 /* How far a body moves over the window; one that leaves the range of the doubles stops at its end. */
-const shiftOf = (step, k) => [0, 1, 2].map((axis) =>
-    Math.max(-(2 ** 1023), Math.min(step.T * (step.poses[k].velocity?.[axis] ?? 0), 2 ** 1023)));
+const shiftOf = (step, k) => [0, 1, 2].map((axis) => {
+    const { position, velocity, end } = step.poses[k], shift = end ? end.position[axis] - position[axis] : step.T * (velocity?.[axis] ?? 0);
+    return Math.max(-(2 ** 1023), Math.min(shift || 0, 2 ** 1023));
+});
 
 /* A world point in units of 2^exponent. */
 function pointOf(point) {
@@ -81,7 +87,7 @@ function surfaceOf(index) {
 
 /* Points of body k of a step after a part of the window. */
 function placed(points, step, k, part) {
-    const turn = orientationOf(step, k), at = positionOf(step, k, part);
+    const turn = orientationOf(step, k, part), at = positionOf(step, k, part);
     return points.map((point) => point.clone().applyQuaternion(turn).add(at));
 }
 
@@ -112,7 +118,7 @@ function placeBodies() {
     const { position, color, normal } = faces.geometry.attributes, point = new THREE.Vector3();
     for (const item of stage.items) {
         const { surface: { corners, normals, starts, centre }, source: { stream: { step, part }, k }, first } = item;
-        const turn = orientationOf(step, k), at = positionOf(step, k, part).sub(stage.centre);
+        const turn = orientationOf(step, k, part), at = positionOf(step, k, part).sub(stage.centre);
         [item.centre] = placed([centre], step, k, part);
         corners.forEach((corner, i) => {
             point.copy(corner).applyQuaternion(turn).add(at).toArray(position.array, 3 * (first + i));
@@ -133,7 +139,7 @@ function placeBodies() {
 /* In a page of one step, dashed edges where moving bodies end. */
 function drawEnds() {
     const { step } = stage.streams[0];
-    const moving = stage.items.filter(({ source: { k } }) => step.moves && step.poses[k].velocity);
+    const moving = stage.items.filter(({ source: { k } }) => step.moves && doesMove(step.poses[k]));
     setLines(ends, moving.flatMap(({ surface: { corners, edges: lines }, source: { k } }) =>
         placed(lines.flat().map((corner) => corners[corner]), step, k, 1).map((point) => point.sub(stage.centre))));
     Object.assign(ends.material, { dashSize: stage.radius / 30, gapSize: stage.radius / 45 });
@@ -161,13 +167,13 @@ function setLines(object, points) {
 
 /* ---- Extent ---- */
 
-/* The corners of all bodies of a step, at the begin and the end of its window. */
+/* The corners of all bodies of a step, at the begin, the middle and the end of its window. */
 function cornersOf(step, only = null, huge = Infinity) {
     const out = [];
     step.bodies.forEach((body, k) => {
         if (!isDrawn(body) || (only && !only.includes(k)) || surfaceOf(body[1]).size >= huge)
             return;
-        for (const part of step.moves ? [0, 1] : [0])
+        for (const part of step.moves ? [0, 0.5, 1] : [0])
             out.push(...placed(surfaceOf(body[1]).extent, step, k, part));
     });
     return out;
