@@ -73,8 +73,8 @@ static bool is_good_pair(const struct pair_query *query)
                query->client_id, query->sequence_number, query->duration, query->method,
                query->want, FMB_WANT_BOX | FMB_WANT_CERTIFICATE | FMB_WANT_GAP | FMB_WANT_POINT) &&
            good_gaps(query->method, query->want & FMB_WANT_GAP) &&
-           model_good_placement(&query->placement[0]) &&
-           model_good_placement(&query->placement[1]) &&
+           model_good_placement(&query->placement[0], query->duration) &&
+           model_good_placement(&query->placement[1], query->duration) &&
            query->placement[0].body.dim == query->placement[1].body.dim;
 }
 
@@ -96,7 +96,7 @@ static enum fmb_status find_pair(struct model *model, const struct pair_query *q
         if (model_by_handle(&query->placement[f]))
             status = model_find(model, &query->placement[f], &made[f]);
     for (int f = 0; f < 2 && status == FMB_OK && query->want & FMB_WANT_CERTIFICATE; f++)
-        if (frames_of(model, &query->placement[f]) > 1)
+        if (frames_of(model, &query->placement[f]) > 1 || query->placement[f].placed.end_count > 0)
             status = FMB_CANNOT_DECIDE;
     for (int f = 0; f < 2 && status == FMB_OK; f++)
         if (!model_by_handle(&query->placement[f]))
@@ -245,7 +245,7 @@ static bool good_placements(const struct scene_query *query)
 {
     bool good = true;
     for (int32_t i = 0; i < query->placement_count; i++)
-        good = good && model_good_placement(&query->placement[i]) &&
+        good = good && model_good_placement(&query->placement[i], query->duration) &&
                query->placement[i].body.dim == query->placement[0].body.dim;
     return good;
 }
@@ -382,15 +382,15 @@ static void check_scene_pair(struct reading *reading, const unsigned pair[2])
         (is_ignored(query, pair) || is_within_group(query, pair)))
         return;
     fmb_decide(fmb_method_by_number(query->method), &a, &b, query->duration, want, &answer);
-    const bool contact = answer.verdict >= FMB_TOUCHING;
-    const bool near = query->margin > 0 && answer.gap.bounds[0] <= query->margin;
-    if (query->which != FMB_PAIRS_LISTED && !contact && !near)
+    const bool contact = answer.verdict >= FMB_TOUCHING, none = answer.verdict == 0;
+    const bool near = !none && query->margin > 0 && answer.gap.bounds[0] <= query->margin;
+    if (query->which != FMB_PAIRS_LISTED && !contact && !near && !none)
         return;
     const int n = reading->verdicts++;
     FUZZ_CHECK(n < result->verdict_count && result->verdict[n] == answer.verdict);
     if (result->names_pairs)
         FUZZ_CHECK(result->pair[n][0] == pair[0] && result->pair[n][1] == pair[1]);
-    if (wants_gaps(query) && (contact || near || query->want & FMB_WANT_GAP))
+    if (wants_gaps(query) && !none && (contact || near || query->want & FMB_WANT_GAP))
         FUZZ_CHECK(query_same_gap(&result->gap[n], &answer.gap));
     else if (result->has_gaps)
         FUZZ_CHECK(!query_has_gap(&result->gap[n]));
@@ -568,9 +568,12 @@ static bool takes_too_long(const struct query_placement *placement, int32_t coun
         for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
             widen(&spread, placement[i].placed.position[axis]);
             widen(&spread, placement[i].placed.velocity[axis]);
+            widen(&spread, placement[i].placed.end_position[axis]);
         }
-        for (int k = 0; k < QUERY_ORIENTATION_MAX; k++)
+        for (int k = 0; k < QUERY_ORIENTATION_MAX; k++) {
             widen(&spread, placement[i].placed.orientation[k]);
+            widen(&spread, placement[i].placed.end_orientation[k]);
+        }
     }
     for (size_t i = 0; i < size; i++)
         hash = (hash ^ bytes[i]) * 16777619u;

@@ -194,7 +194,20 @@ static bool good_orientation(const struct query_placement *placement)
     return most > 0 && !(most > least * 0x1p200);
 }
 
-bool model_good_placement(const struct query_placement *placement)
+/* Right angles and lengths are exact, so they are the engine's. */
+static bool good_end(const struct query_placement *placement, double duration)
+{
+    struct fmb_placement placed = placement->placed;
+    const int dim = placement->body.dim, turns = placed.orientation_count;
+    struct fmb_body any = {.dim = dim, .frame_count = 1};
+    placed.body = &any;
+    return placed.end_count == 0 ||
+           (placement->velocity_count == 0 && duration > 0 && placed.end_count == dim + turns &&
+            are_finite(placed.end_position, dim) && are_finite(placed.end_orientation, turns) &&
+            fmb_placement_check(&placed) == FMB_OK);
+}
+
+bool model_good_placement(const struct query_placement *placement, double duration)
 {
     const int dim = placement->body.dim;
     return good_id(placement->placed.id) && (dim == 2 || dim == 3) &&
@@ -203,7 +216,7 @@ bool model_good_placement(const struct query_placement *placement)
            good_orientation(placement) &&
            (placement->velocity_count == 0 ||
             (placement->velocity_count == dim && are_finite(placement->placed.velocity, dim))) &&
-           placement->placed.end_count == 0; /* not supported yet */
+           good_end(placement, duration);
 }
 
 bool model_good_request(int64_t client_id, int64_t sequence_number, double duration, int32_t method,

@@ -71,12 +71,12 @@ static struct results_gap gap_of(const fmb_msgs_scene_result_t *message, int32_t
                                 message->num_gap_frames ? message->gap_frames + 2 * i : NULL};
 }
 
-/* Neither near nor a contact. */
+/* Neither near nor a contact, or not decided. */
 static bool is_far(const fmb_msgs_scene_result_t *message, int32_t i)
 {
     const int32_t dim = dim_of_gaps(message);
     const int16_t *frames = message->num_gap_frames ? message->gap_frames + 2 * i : NULL;
-    return message->verdicts[i] == SEPARATED && results_are_none(message->gaps + 2 * i, 2) &&
+    return message->verdicts[i] <= SEPARATED && results_are_none(message->gaps + 2 * i, 2) &&
            (!frames || (frames[0] == 0 && frames[1] == 0)) &&
            results_are_none(message->directions + dim * i, dim) &&
            results_are_none(message->witnesses + (1 + 2 * dim) * i, 1 + 2 * dim);
@@ -102,13 +102,12 @@ static bool are_gaps(const fmb_msgs_scene_result_t *message)
     return good;
 }
 
-/* Contacts, and near pairs, where the gaps have been checked. */
+/* Contacts, near pairs, where the gaps have been checked, and those not decided. */
 static bool are_named(const fmb_msgs_scene_result_t *message)
 {
     bool good = true;
     for (int32_t i = 0; i < message->num_indices / 2 && good; i++)
-        good = message->verdicts[i] >= TOUCHING ||
-               (message->verdicts[i] == SEPARATED && message->num_gaps > 0 && !is_far(message, i));
+        good = message->verdicts[i] != SEPARATED || (message->num_gaps > 0 && !is_far(message, i));
     return good;
 }
 

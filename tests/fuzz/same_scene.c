@@ -41,7 +41,9 @@ static bool same_placed(const struct fmb_placement *a, const struct fmb_placemen
                 a->orientation_count == b->orientation_count &&
                 same_doubles(a->position, b->position, FMB_DIM_MAX) &&
                 same_doubles(a->velocity, b->velocity, FMB_DIM_MAX) &&
-                same_doubles(a->orientation, b->orientation, 4);
+                same_doubles(a->orientation, b->orientation, 4) && a->end_count == b->end_count &&
+                same_doubles(a->end_position, b->end_position, FMB_DIM_MAX) &&
+                same_doubles(a->end_orientation, b->end_orientation, 4);
     for (unsigned i = 0; same && i < a->body->frame_count; i++)
         same = same_frame(fmb_body_frame(a->body, i), fmb_body_frame(b->body, i));
     return same;
