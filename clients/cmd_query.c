@@ -47,8 +47,9 @@ static const char usage[] =
     "                   or deepest points\n"
     "  --certificate    give a proof of each verdict too. It is checked here with the\n"
     "                   numbers of the scene alone; a verdict without a valid proof\n"
-    "                   counts as not decided. A pair with a body of several frames\n"
-    "                   has a verdict, but no certificate; their number is reported.\n"
+    "                   counts as not decided. A pair with a body of several frames,\n"
+    "                   or one with an end, has a verdict, but no certificate; their\n"
+    "                   number is reported.\n"
     "                   The service decides each pair by a query of its own, which\n"
     "                   takes longer\n"
     "  --html FILE      write a page that plays the scenes into FILE; implies --box\n"
@@ -67,7 +68,9 @@ static const char usage[] =
     "of \"radius\" and \"length\" (along z) is a hull of \"sides\" (16) that contains it.\n"
     "Pairs are all but those to ignore, unless \"pairs\": [[1,2]] lists them; names may\n"
     "stand for ids there. name, orientation [w,x,y,z] (of any length; or\n"
-    "\"orientation_xyzw\"), velocity, duration (default 1) and margin are optional.\n"
+    "\"orientation_xyzw\"), velocity, duration (default 1) and margin are optional. In\n"
+    "place of velocity, \"end\": {\"position\": [0,0,1], \"orientation\": [1,0,0,1]} is\n"
+    "the pose at the end of the window: a body turns to it by less than half a turn.\n"
     "With a margin, pairs that touch or overlap, or are no farther apart, have gaps:\n"
     "  {\"dim\": 3, \"duration\": 1.0, \"margin\": 0.001,\n"
     "   \"bodies\": [{\"id\": 1, \"name\": \"table\", \"shape\": \"box\", \"size\": [2,1,0.25],\n"
@@ -106,11 +109,12 @@ struct query {
     const struct fmb_scene *scene;
     int64_t pairs, answered; /* of the scene */
     bool undecided;          /* a pair has no verdict */
-    uint64_t unproven;       /* pairs without a certificate because a body has several frames */
+    uint64_t unproven;       /* pairs without a certificate: a body has several frames or an end */
     bool has_margin;         /* a scene has a margin */
     int64_t scenes, empty;   /* empty: scenes without a pair to decide */
     bool moves;              /* a body moves in a scene whose duration is not 0 */
     int64_t still_body;      /* first body that would move if the duration were not 0; 0: none */
+    int64_t uneven_body;     /* first body that turns_unevenly(); 0: none */
     int worst;               /* severity of all pairs */
     double outside;          /* of all scenes */
 };
@@ -166,6 +170,23 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     progress_to(++query->answered, query->pairs);
 }
 
+/* Whether the orientation at the end differs from the one at the begin, and the lengths of the two
+ * differ by more than rounding. */
+static bool turns_unevenly(const struct fmb_placement *body)
+{
+    double square[2] = {0, 0}, product = 0, largest = 0;
+    for (int i = 0; i < body->orientation_count; i++)
+        largest = fmax(largest, fabs(body->orientation[i]));
+    for (int i = 0; body->end_count > 0 && i < body->orientation_count; i++) {
+        const double q[2] = {body->orientation[i] / largest, body->end_orientation[i] / largest};
+        square[0] += q[0] * q[0];
+        square[1] += q[1] * q[1];
+        product += q[0] * q[1];
+    }
+    return fabs(square[1] - square[0]) > 1e-12 * square[0] &&
+           product * product < (1 - 1e-15) * square[0] * square[1];
+}
+
 /* Records what report_limits() reports of a scene. */
 static void note_scene(struct query *query, const struct fmb_scene *scene, uint64_t pairs)
 {
@@ -176,7 +197,9 @@ static void note_scene(struct query *query, const struct fmb_scene *scene, uint6
         const struct fmb_placement *body = &scene->placements[i];
         const double *v = body->velocity;
         const bool moving = v[0] != 0 || v[1] != 0 || v[2] != 0;
-        query->moves = query->moves || (moving && scene->duration > 0);
+        query->moves = query->moves || (moving && scene->duration > 0) || body->end_count > 0;
+        if (!query->uneven_body && turns_unevenly(body))
+            query->uneven_body = body->id;
         if (moving && !query->moves && !query->still_body)
             query->still_body = body->id;
     }
@@ -243,13 +266,18 @@ static void report_limits(const struct query *query)
     char text[NUMBER_TEXT_MAX];
     scene_report_outside(query->input, query->outside);
     if (query->unproven > 0)
-        complain("no certificate for %s of the pairs: a body has several frames",
+        complain("no certificate for %s of the pairs: a body has several frames or an end",
                  number_grouped((int64_t) query->unproven, text));
     if (query->fail_if == 2 * FMB_SEPARATED + 1 && query->scene && !query->has_margin)
         complain("--fail-if near: no scene has a \"margin\", so no separated pair is near");
     if (query->still_body && !query->moves)
         complain("body %" PRId64 " has a velocity, but \"duration\" is 0: nothing moves",
                  query->still_body);
+    if (query->uneven_body)
+        complain("body %" PRId64
+                 " turns unevenly: its orientations at the begin and at the end of "
+                 "the window have different lengths",
+                 query->uneven_body);
     if (query->empty > 0 && query->scenes == 1)
         complain("the scene has no pair to decide");
     else if (query->empty > 0)

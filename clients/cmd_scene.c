@@ -5,6 +5,7 @@
 #include "robot_run.h"
 #include "scene_json.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -112,11 +113,25 @@ static bool print_rows(struct robot_run *run, struct joint_table *table, bool pr
     return good && row != JOINT_ROW_BAD;
 }
 
+/* The windows of a table with times are not those in which bodies of the world have an end. */
+static bool check_ends(const struct robot_run *run, const struct joint_table *table)
+{
+    const struct fmb_scene *scene = &run->scene->owner.scene;
+    for (size_t i = 0; i < scene->placement_count && table->has_time; i++)
+        if (scene->placements[i].end_count != 0) {
+            complain("%s: it has times, but body %" PRId64 " has an \"end\" of one window",
+                     run->options->table, scene->placements[i].id);
+            return false;
+        }
+    return true;
+}
+
 static bool print_table(struct robot_run *run)
 {
     struct joint_table table;
     bool good = joint_table_open(run->options->table, &run->joints, &table) &&
-                print_rows(run, &table, false) && joints_check(&run->joints);
+                check_ends(run, &table) && print_rows(run, &table, false) &&
+                joints_check(&run->joints);
     if (good) {
         robot_run_report(run, &table);
         good = joint_table_rewind(&table) && print_rows(run, &table, true);

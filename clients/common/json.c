@@ -139,8 +139,8 @@ typedef bool read_function(const struct place *at, void *out);
 struct key {
     const char *name;
     bool required;
-    read_function *read;
-    size_t offset; /* of the value in the struct of the object */
+    read_function *read; /* NULL: read_members() leaves the key out */
+    size_t offset;       /* of the value in the struct of the object */
 };
 
 static bool check_present(const struct place *member)
@@ -185,7 +185,8 @@ static bool find_members(const struct place *at, const struct key *keys, int cou
 static bool read_members(const struct place *member, const struct key *keys, int count, void *out)
 {
     for (int i = 0; i < count; i++)
-        if (member[i].item && !keys[i].read(&member[i], (char *) out + keys[i].offset))
+        if (member[i].item && keys[i].read &&
+            !keys[i].read(&member[i], (char *) out + keys[i].offset))
             return false;
     return true;
 }
@@ -411,9 +412,10 @@ static bool read_orientation(const struct place *at, void *out)
 
 static read_function read_frames;
 
-/* In the order of reading. A frame has those from SHAPE to ORIENTATION_XYZW. */
+/* In the order of reading. A frame has those from SHAPE to ORIENTATION_XYZW, an end the last three
+ * of these. */
 enum { ID, NAME, GROUP, VELOCITY, LINK, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, RADIUS, LENGTH };
-enum { SIDES = LENGTH + 1, POSITION, ORIENTATION, ORIENTATION_XYZW, FRAMES, BODY_KEYS };
+enum { SIDES = LENGTH + 1, POSITION, ORIENTATION, ORIENTATION_XYZW, FRAMES, END, BODY_KEYS };
 
 static const struct key body_keys[BODY_KEYS] = {
     [ID] = {"id", true, read_id, offsetof(struct body, placement.id)},
@@ -434,6 +436,7 @@ static const struct key body_keys[BODY_KEYS] = {
     [ORIENTATION_XYZW] = {"orientation_xyzw", false, read_orientation,
                           offsetof(struct body, placement)},
     [FRAMES] = {"frames", false, read_frames, offsetof(struct body, placement.body)},
+    [END] = {"end", false, NULL, 0},
 };
 
 /* Refuses the first of these keys that is present. keys: sum of 1 << key. what: the kind of object,
@@ -486,23 +489,30 @@ static bool check_keys(const struct place *member, int shape, bool within_frames
            check_present(&member[ORIGIN]);
 }
 
+/* Finds the keys from `first` to before `end`. */
+static bool find_keys(const struct place *at, int first, int end, struct place member[BODY_KEYS])
+{
+    memset(member, 0, BODY_KEYS * sizeof *member);
+    if (!find_members(at, body_keys + first, end - first, member + first))
+        return false;
+    if (!member[ORIENTATION_XYZW].item)
+        return true;
+    if (member[ORIENTATION].item)
+        return refuse(at, "both \"orientation\" and \"orientation_xyzw\"");
+    if (dim_of(at) == 2)
+        return refuse(&member[ORIENTATION_XYZW], "in 2D use \"orientation\"");
+    member[ORIENTATION] = member[ORIENTATION_XYZW];
+    member[ORIENTATION_XYZW].item = NULL;
+    return true;
+}
+
 /* Reads the keys from `first` to before `end`, which include those of a frame. */
 static bool read_keys(const struct place *at, int first, int end, struct place member[BODY_KEYS],
                       struct body *out)
 {
     memset(out, 0, sizeof *out);
-    memset(member, 0, BODY_KEYS * sizeof *member);
-    if (!find_members(at, body_keys + first, end - first, member + first))
-        return false;
-    if (member[ORIENTATION_XYZW].item) {
-        if (member[ORIENTATION].item)
-            return refuse(at, "both \"orientation\" and \"orientation_xyzw\"");
-        if (dim_of(at) == 2)
-            return refuse(&member[ORIENTATION_XYZW], "in 2D use \"orientation\"");
-        member[ORIENTATION] = member[ORIENTATION_XYZW];
-        member[ORIENTATION_XYZW].item = NULL;
-    }
-    return read_members(member + first, body_keys + first, SHAPE + 1 - first, out) &&
+    return find_keys(at, first, end, member) &&
+           read_members(member + first, body_keys + first, SHAPE + 1 - first, out) &&
            check_keys(member, out->shape, first == SHAPE) &&
            read_members(member + ORIGIN, body_keys + ORIGIN, end - ORIGIN, out);
 }
@@ -646,6 +656,28 @@ static bool add_id(const struct place *at, int64_t id, const char *name, size_t 
     return true;
 }
 
+/* Reads the end of a body that is complete but for it. What is missing is as at the begin. */
+static bool read_end(const struct place *at, struct fmb_placement *placement)
+{
+    struct place member[BODY_KEYS];
+    struct body end = {.placement = *placement};
+    if (!find_keys(at, POSITION, FRAMES, member) ||
+        !read_members(member + POSITION, body_keys + POSITION, FRAMES - POSITION, &end))
+        return false;
+    if (at->reader->scene->scene.duration == 0)
+        return refuse(at, "\"duration\" is 0: the window has no end of its own");
+    if (placement->orientation_count == 0 && member[ORIENTATION].item)
+        placement->orientation[0] = 1;
+    placement->orientation_count = end.placement.orientation_count;
+    placement->end_count = dim_of(at) + placement->orientation_count;
+    memcpy(placement->end_position, end.placement.position, sizeof placement->end_position);
+    memcpy(placement->end_orientation, end.placement.orientation,
+           sizeof placement->end_orientation);
+    return fmb_placement_check(placement) == FMB_OK ||
+           refuse(&member[ORIENTATION],
+                  "half a turn away, which takes two windows, or not from 1/4 to 4 times as long");
+}
+
 /* Reads a body. The "origin" of one that is a frame of components is its position, if it has
  * neither "position" nor "orientation". */
 static bool read_body(const struct place *at, void *out)
@@ -668,6 +700,10 @@ static bool read_body(const struct place *at, void *out)
         if (!make_body(at, &given, 1, &placement->body))
             return false;
     }
+    if (member[END].item && member[VELOCITY].item)
+        return refuse(at, "both \"velocity\" and \"end\"");
+    if (member[END].item && !read_end(&member[END], placement))
+        return false;
     *(struct fmb_placement *) out = *placement;
     if (!member[LINK].item)
         return true;

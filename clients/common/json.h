@@ -34,6 +34,7 @@
  * - position and origin: 0. (A body that is one frame of components needs one of position,
  *   orientation and origin; one of vertices does not.)
  * - orientation: not turned. velocity: at rest.
+ * - position and orientation of end: those of the body at the begin.
  *
  * origin of a body that is one frame is its position, unless it has position or orientation too;
  * then, as in frames, it is in body coordinates. In frames, only boxes, capsules and cylinders have
@@ -42,6 +43,9 @@
  * capsule that is moved or turned. In 3D, "orientation_xyzw": [x,y,z,w] may stand in place of
  * orientation. In pairs and ignore, the name of a body may stand in place of its id, unless another
  * body has the same name.
+ *
+ * "end": {"position": [0,0,1], "orientation": [1,0,0,1]}, in place of velocity, is the pose of a
+ * body at the end of the window, which then is not 0 long. fmb.h says how the body moves there.
  *
  * An input holds one or more such objects, one after the other. */
 #ifndef JSON_H

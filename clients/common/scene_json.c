@@ -107,7 +107,15 @@ void scene_json_motion(struct json_writer *json, const struct fmb_placement *pla
 {
     if (placement->orientation_count > 0)
         json_numbers(json, "orientation", placement->orientation, placement->orientation_count);
-    write_vector(json, "velocity", placement->velocity, dim);
+    if (placement->end_count == 0) {
+        write_vector(json, "velocity", placement->velocity, dim);
+        return;
+    }
+    json_begin(json, "end", '{');
+    json_numbers(json, "position", placement->end_position, dim);
+    if (placement->orientation_count > 0)
+        json_numbers(json, "orientation", placement->end_orientation, placement->orientation_count);
+    json_end(json, '}');
 }
 
 /* A body of one frame by vertices (not a sphere), or whose origin or centre is 0, is written as

@@ -11,7 +11,7 @@
  * line. Check ferror(out) for write errors. */
 void scene_json_write(FILE *out, struct owned_scene *scene);
 
-/* Write members of a body: "frames"; "orientation" and "velocity", where it has them. */
+/* Write members of a body: "frames"; "orientation", "velocity" and "end", where it has them. */
 void scene_json_frames(struct json_writer *json, const struct fmb_body *body);
 void scene_json_motion(struct json_writer *json, const struct fmb_placement *placement, int dim);
 

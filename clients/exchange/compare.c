@@ -65,7 +65,9 @@ static double largest_coordinate(const struct logged_query *query, double durati
             const double *position = &placement[i].placed.position[k];
             const double moved =
                 placement[i].velocity_count ? placement[i].placed.velocity[k] * duration : 0;
-            const double ends[2] = {fabs(*position) + reach, fabs(*position + moved) + reach};
+            const double end = placement[i].placed.end_count ? placement[i].placed.end_position[k]
+                                                             : *position + moved;
+            const double ends[2] = {fabs(*position) + reach, fabs(end) + reach};
             most = largest(ends, 2, most);
         }
     }

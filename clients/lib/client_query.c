@@ -55,10 +55,11 @@ int fmb_client_query_pair(struct fmb_client *client, const struct fmb_placement 
 {
     struct fmb_placement placement[2] = {pair[0], pair[1]};
     placement[0].group = placement[1].group = 0;
+    const bool ends = pair[0].end_count || pair[1].end_count;
     const struct fmb_scene scene = {.placements = placement,
                                     .placement_count = 2,
                                     .duration = duration,
-                                    .instant = duration == 0,
+                                    .instant = duration == 0 && !ends,
                                     .want = want};
     *out = (struct fmb_client_answer){.b = 1, .text = ""};
     out->status = query(client, &scene, true, keep_answer, client);

@@ -84,6 +84,15 @@ static struct held_body *entry_of(const struct part *part, int32_t i)
 
 /* ---- Queries ---- */
 
+/* Converts the i-th placement. At an instant, no body reaches the end of its motion. */
+static void convert(const struct part *part, unsigned i, const struct handle *handle,
+                    unsigned char *bytes, struct query_placement *out)
+{
+    client_scene_placement(placement_of(part, i), handle, bytes, out);
+    if (part->run->scene->instant)
+        out->placed.end_count = 0;
+}
+
 /* Converts the placements: by handle if the service holds the body, else with frames. Returns their
  * bytes; a number above max means that not all of them were converted. */
 static size_t write_placements(struct part *part, size_t max, struct query_placement *out)
@@ -93,8 +102,7 @@ static size_t write_placements(struct part *part, size_t max, struct query_place
     for (int32_t i = 0; i < part->placement_count && bytes <= max; i++) {
         const struct held_body *body = part->unknown < UNKNOWN_MAX ? entry_of(part, i) : NULL;
         part->whole[i] = !body || !body->held;
-        client_scene_placement(placement_of(part, (unsigned) i),
-                               part->whole[i] ? NULL : &body->handle, at, &out[i]);
+        convert(part, (unsigned) i, part->whole[i] ? NULL : &body->handle, at, &out[i]);
         at += part->whole[i] ? out[i].body.size : 0;
         bytes += wire_placement_bytes(&out[i]);
     }
@@ -152,7 +160,7 @@ static size_t write_definitions(struct part *part, unsigned char *out)
         if (!body || body->held)
             continue;
         struct query_placement *placement = &query->placement[query->placement_count];
-        client_scene_placement(placement_of(part, (unsigned) i), NULL, at, placement);
+        convert(part, (unsigned) i, NULL, at, placement);
         if (wire_placement_bytes(placement) > left)
             break;
         left -= wire_placement_bytes(placement);

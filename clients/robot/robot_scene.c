@@ -80,9 +80,9 @@ static bool carry(struct fmb_robot_scene *scene, const char *place,
     snprintf(why, sizeof why, "the robot has no link '%.*s'", QUERY_NAME_MAX, name);
     if (!link)
         return refuse_body(scene, place, body, why);
-    if (v[0] != 0 || v[1] != 0 || v[2] != 0)
+    if (v[0] != 0 || v[1] != 0 || v[2] != 0 || body->end_count != 0)
         return refuse_body(scene, place, body,
-                           "a body that a link carries has no velocity of its own");
+                           "a body that a link carries has no velocity or end of its own");
     out->link = link->index;
     return true;
 }
@@ -278,6 +278,13 @@ static bool check_worlds(struct fmb_robot_scene *scene, const struct fmb_robot_w
         out->duration = fmax(out->duration, world->duration);
         out->margin = fmax(out->margin, world->margin);
     }
+    for (size_t w = 0; w < count && good; w++)
+        for (size_t i = 0; i < worlds[w].scene->placement_count && good; i++)
+            good = worlds[w].scene->placements[i].end_count == 0 ||
+                   worlds[w].scene->duration == out->duration ||
+                   refuse_body(scene, worlds[w].name ? worlds[w].name : "",
+                               &worlds[w].scene->placements[i],
+                               "its \"end\" is that of a window of another \"duration\"");
     return good;
 }
 

@@ -190,6 +190,8 @@ refused() {
     rows 0,0 1,0
     sed -i 's/"shape"/"velocity": [0,1,0], &/' world.json
     refused "body 9, wall moves: on a path only the robot does"
+    sed -i 's/"velocity": [[]0,1,0], /"end": {}, /' world.json
+    refused "body 9, wall moves: on a path only the robot does"
     echo '{"dim": 3, "bodies": []}' > world.json
     echo '<robot name="r"><link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>' > robot.urdf
     refused "the robot has no joint that moves"

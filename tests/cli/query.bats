@@ -638,7 +638,7 @@ squares() {
         {\"id\": 3, \"frames\": [{$box}, {$box, \"position\": [5,0]}]}]}"
     query "$scene" --certificate --fail-if overlapping
     ended 3
-    said 'fmb: no certificate for 2 of the pairs: a body has several frames'
+    said 'fmb: no certificate for 2 of the pairs: a body has several frames or an end'
     jq -e '[.pairs[] | [.a, .b, .verdict, has("certificate")]] ==
         [[1, 2, "touching", true], [1, 3, "overlapping", false], [2, 3, "touching", false]]' <<< "$output"
 }
@@ -778,10 +778,30 @@ refused() {
     [[ $output == *touching* ]]
 }
 
+@test "a body has an end in a window only, in place of a velocity; orientations of different lengths are reported once" {
+    ending='{"dim": 3, "duration": 2, "bodies": [{"id": 1, "shape": "sphere", "radius": 1}, {"id": 7, "shape": "box", "size": [1,1,1], "position": [9,0,0],
+        "end": {"orientation": [2,0,0,2]}}, {"id": 8, "shape": "box", "size": [1,1,1], "position": [0,9,0], "end": {"orientation": [2,0,0,0]}}]}'
+    for scenes in "$ending" "$ending $ending"; do
+        query "$scenes"
+        said 'fmb: body 7 turns unevenly: its orientations at the begin and at the end of the window have different lengths'
+    done
+    query "${ending/2,0,0,2/0.6,0,0,-0.8}" # of length 1, up to rounding
+    said ''
+    query "${ending/: 2,/: 0,}"
+    ended 2
+    said 'fmb: standard input: bodies[1].end: "duration" is 0: the window has no end of its own'
+    query "${ending/2,0,0,2/0,0,1,0}"
+    ended 2
+    said 'fmb: standard input: bodies[1].end.orientation: half a turn away, which takes two windows, or not from 1/4 to 4 times as long'
+    query "${ending/9,0,0],/9,0,0], \"velocity\": [0,0,0],}"
+    ended 2
+    said 'fmb: standard input: bodies[1]: both "velocity" and "end"'
+}
+
 @test "an unknown key or shape lists what there is" {
     query '{"dim": 3, "bodies": [{"id": 1, "radii": 1}]}'
     ended 2
-    said 'fmb: standard input: bodies[0]: unknown key "radii" (there are id, name, group, velocity, link, shape, origin, components, vertices, size, radius, length, sides, position, orientation, orientation_xyzw, frames)'
+    said 'fmb: standard input: bodies[0]: unknown key "radii" (there are id, name, group, velocity, link, shape, origin, components, vertices, size, radius, length, sides, position, orientation, orientation_xyzw, frames, end)'
     query '{"dim": 3, "bodies": [{"id": 1, "shape": "ball"}]}'
     said 'fmb: standard input: bodies[0].shape: unknown shape "ball" (there are cuboid, tetrahedron, face, box, hull, sphere, capsule, cylinder)'
     query '{"dim": 3, "bodys": []}'

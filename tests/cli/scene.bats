@@ -617,6 +617,25 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     refused 't.csv: line 3: body 9: not a finite number' robot.urdf --with world.json --joints-csv t.csv
 }
 
+@test "a world whose bodies have an end keeps it, in its own window" {
+    body='{"id": 9, "shape": "box", "size": [1,1,1], "orientation": [1,0,0,0], "end": {"position": [0,0,1], "orientation": [1,0,0,0.5]}}'
+    echo "{\"dim\": 3, \"duration\": 2, \"bodies\": [$body]}" > world.json
+    scene robot.urdf --with world.json
+    ended 0
+    shows '[.duration, (.bodies[-1] | .orientation, .end)]'
+    is '[2,[1,0,0,0],{"position":[0,0,1],"orientation":[1,0,0,0.5]}]'
+    printf 'turn,slide\n0,0\n0.5,0\n' > t.csv
+    scene robot.urdf --with world.json --joints-csv t.csv
+    shows '[.duration, .bodies[-1].end.position[2]]'
+    is $'[2,1]\n[2,1]'
+    printf 'turn,slide,time\n0,0,0\n0,0,2\n' > t.csv
+    refused 't.csv: it has times, but body 9 has an "end" of one window' robot.urdf --with world.json --joints-csv t.csv
+    echo '{"dim": 3, "duration": 3, "bodies": []}' > longer.json
+    refused 'world.json: body 9: its "end" is that of a window of another "duration"' robot.urdf --with world.json --with longer.json
+    sed -i 's/"shape"/"link": "arm", &/' world.json
+    refused 'world.json: body 9: a body that a link carries has no velocity or end of its own' robot.urdf --with world.json
+}
+
 @test "a world that is not one scene in 3D of all pairs is refused" {
     cube='"shape": "box", "size": [1,1,1]'
     echo "{\"dim\": 3, \"bodies\": [{\"id\": 3, $cube}, {\"id\": 4, $cube}], \"pairs\": [[3,4]]}" > world.json
@@ -710,7 +729,7 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     ended 2
     said "fmb: bad.json: body 7, a: the robot has no link 'hand'
 fmb: bad.json: body 8: the robot has no link ''
-fmb: bad.json: body 9, c: a body that a link carries has no velocity of its own"
+fmb: bad.json: body 9, c: a body that a link carries has no velocity or end of its own"
     echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, $cube, \"link\": \"arm\"}, {\"id\": 7, $cube, \"link\": \"base\"}]}" > bad.json
     refused 'bad.json: bodies[1].id: 7 is the id of bodies[0] already' robot.urdf --with bad.json
     echo "{\"dim\": 3, \"bodies\": [{\"id\": 7, $cube, \"link\": 3}]}" > bad.json

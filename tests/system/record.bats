@@ -409,6 +409,40 @@ hulls() {
         "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
 }
 
+# A ball that is met by what has an end: one that moves, one that turns, and one that does both, in two
+# windows that join. All numbers are such as are printed.
+ends() {
+    jq -nc --argjson middle '{"position":[0.4,0.1,-0.3],"orientation":[0.9,0.1,-0.2,0.3]}' '
+        {position: [1.1,-0.7,0.3], orientation: [-0.8,0.3,0.1,0.4]} as $last | ({shape: "box", size: [2,0.3,0.1]}) as $rod |
+        [$middle, $last] | ., [$last, $middle] | {label: "ends", dim: 3, duration: 0.7, bodies: [
+        {id: 1, name: "ball", shape: "sphere", radius: 0.2}, {id: 2, shape: "box", size: [1,1,1], position: [-2,0,0], end: {position: [-0.65,0,0]}},
+        ($rod + {id: 3, position: [0,0.6,0], orientation: [1,0,0,0], end: {position: [0,0.6,0], orientation: [1,0,0,0.4]}}),
+        ($rod + {id: 4} + .[0] + {end: .[1]})]}'
+}
+
+@test "bodies with an end are answered, recorded, printed and replayed with the bits of --local" {
+    ends > "$BATS_TEST_TMPDIR/ends.json"
+    [ "$(wc -l < "$BATS_TEST_TMPDIR/ends.json")" = 2 ]
+    "$FMB" query --json --gap --point --local "$BATS_TEST_TMPDIR/ends.json" > "$BATS_TEST_TMPDIR/local" || true
+    start_fmbd
+    start_record "$log"
+    "$FMB" query --json --gap --point "$BATS_TEST_TMPDIR/ends.json" > "$BATS_TEST_TMPDIR/served" || true
+    cmp "$BATS_TEST_TMPDIR/served" "$BATS_TEST_TMPDIR/local"
+    wait_until has_events FMB_SCENE_RESULT "$log" 2
+    finish_record
+    stop_fmbd
+    "$FMB" replay --json "$log" > "$BATS_TEST_TMPDIR/replay"
+    jq -e '.same >= 2 and .different == 0' "$BATS_TEST_TMPDIR/replay"
+    "$FMB" log cut -o "$BATS_TEST_TMPDIR/cut" --channel 'FMB_SCENE_.*' "$log"
+    for event in 1 3; do
+        "$FMB" log scene --event $event "$BATS_TEST_TMPDIR/cut" 2> "$messages"
+    done > "$BATS_TEST_TMPDIR/scenes"
+    "$FMB" query --json --gap --point --local "$BATS_TEST_TMPDIR/scenes" | cmp - "$BATS_TEST_TMPDIR/local"
+    # The numbers are those that were given.
+    jq -S 'del(.pairs)' "$BATS_TEST_TMPDIR/ends.json" > "$BATS_TEST_TMPDIR/given"
+    jq -S 'del(.pairs)' "$BATS_TEST_TMPDIR/scenes" | diff "$BATS_TEST_TMPDIR/given" -
+}
+
 # bats test_tags=release
 @test "of a rotation that keeps two files each query can be resolved" {
     start_fmbd

@@ -545,7 +545,7 @@ static void bodies_that_move_need_a_window(void **state)
 {
     struct fmb_placement placement[2] = {{.body = cube_of(1)}};
     relay_start(10, 5, 6);
-    for (int moving = 0; moving < 2; moving++)
+    for (int moving = 0; moving < 3; moving++)
         for (int duration = 0; duration < 2; duration++)
             for (int instant = 0; instant < 2; instant++) {
                 const struct fmb_scene scene = {.placements = placement,
@@ -554,19 +554,113 @@ static void bodies_that_move_need_a_window(void **state)
                                                 .instant = instant};
                 int contacts = 0;
                 placement[1] = placement[0];
-                placement[1].velocity[2] = moving;
+                placement[1].velocity[2] = moving == 1;
+                placement[1].end_count = moving == 2 ? 3 : 0;
                 if (duration ? instant : !instant && moving) {
                     wrong(test.client, &scene, FMB_BAD_DURATION,
                           instant ? "duration: " : "duration: it is 0, but body 1 moves");
                     continue;
                 }
-                assert_int_equal(fmb_client_query(test.client, &scene, count_meeting, &contacts),
-                                 FMB_OK);
-                assert_int_equal(contacts, 1);
+                if (moving < 2 || instant) {
+                    assert_int_equal(
+                        fmb_client_query(test.client, &scene, count_meeting, &contacts), FMB_OK);
+                    assert_int_equal(contacts, 1);
+                }
             }
     struct fmb_client_answer answer; /* of a pair query, whose duration 0 is an instant */
+    assert_int_equal(fmb_client_query_pair(test.client, placement, 0, 0, &answer),
+                     FMB_BAD_DURATION);
+    assert_string_equal(answer.text, "duration: it is 0, but body 1 moves");
+    placement[1] = placement[0], placement[1].velocity[0] = 1;
     assert_int_equal(fmb_client_query_pair(test.client, placement, 0, 0, &answer), FMB_OK);
     assert_int_equal(answer.answer.verdict, FMB_OVERLAPPING);
+}
+
+/* ---- Ends ---- */
+
+struct ends {
+    const struct fmb_scene *scene;
+    unsigned last[2];
+    size_t given, undecided;
+};
+
+static void check_end(void *user, const struct fmb_client_answer *of)
+{
+    struct ends *ends = user;
+    const struct fmb_scene *scene = ends->scene;
+    const unsigned want = FMB_WANT_BOX | FMB_WANT_POINT | FMB_WANT_GAP;
+    struct fmb_answer answer;
+    assert_int_equal(fmb_decide(fmb_method_default(), &scene->placements[of->a],
+                                &scene->placements[of->b], scene->duration, want, &answer),
+                     of->status);
+    assert_true(scene->which == FMB_PAIRS_LISTED || ends->given == 0 || of->a > ends->last[0] ||
+                (of->a == ends->last[0] && of->b > ends->last[1]));
+    ends->last[0] = of->a;
+    ends->last[1] = of->b;
+    ends->given++;
+    ends->undecided += of->status == FMB_CANNOT_DECIDE;
+    if (of->status == FMB_OK)
+        assert_true(query_same_answer(&of->answer, &answer));
+    else
+        assert_string_equal(of->text, fmb_status_text(FMB_CANNOT_DECIDE));
+}
+
+static size_t count_named(const struct fmb_scene *scene)
+{
+    struct fmb_answer answer;
+    size_t count = 0;
+    for (size_t b = 0; b < scene->placement_count; b++)
+        for (size_t a = 0; a < b; a++) {
+            fmb_decide(fmb_method_default(), &scene->placements[a], &scene->placements[b],
+                       scene->duration, 0, &answer);
+            count += answer.verdict != FMB_SEPARATED;
+        }
+    return count;
+}
+
+/* As the engine answers them: no pair without a verdict is taken for separated. */
+static void ends_are_answered(void **state)
+{
+    enum { BODIES = 40 };
+    relay_start(65536, 5, 6);
+    for (int dim = 2; dim <= 3; dim++) {
+        const int turns = dim == 2 ? 2 : 4;
+        struct fmb_placement *frame = frames_of(BODIES, dim, 4, 1);
+        for (size_t i = 0; i < BODIES; i += 2) {
+            memset(frame[i].velocity, 0, sizeof frame[i].velocity);
+            frame[i].end_count = dim + frame[i].orientation_count;
+            for (int axis = 0; axis < dim; axis++)
+                frame[i].end_position[axis] = frame[i].position[axis] + 0.125 * (double) (i % 3);
+            for (int k = 0; k < frame[i].orientation_count; k++)
+                frame[i].end_orientation[k] =
+                    frame[i].orientation[(k + 1) % turns] * 0.25 + frame[i].orientation[k];
+        }
+        struct fmb_scene scene = scene_of(frame, BODIES, FMB_PAIRS_ALL, ALL_WANTS | FMB_WANT_GAP);
+        struct ends all = {.scene = &scene}, listed = {.scene = &scene};
+        assert_int_equal(fmb_client_query(test.client, &scene, check_end, &all), FMB_OK);
+        assert_int_equal(all.given, count_named(&scene));
+        unsigned(*pair)[2] = list_of(60, BODIES);
+        scene.which = FMB_PAIRS_LISTED;
+        scene.pairs = (const unsigned(*)[2]) pair;
+        scene.pair_count = 60;
+        assert_int_equal(fmb_client_query(test.client, &scene, check_end, &listed), FMB_OK);
+        assert_int_equal(listed.given, 60);
+        /* At an instant, nothing is known of the end. */
+        scene.duration = 0;
+        scene.instant = true;
+        struct fmb_placement still[BODIES];
+        memcpy(still, frame, sizeof still);
+        for (size_t i = 0; i < BODIES; i++)
+            still[i].end_count = 0;
+        struct fmb_scene truth = scene;
+        truth.placements = still;
+        struct ends instant = {.scene = &truth};
+        assert_int_equal(fmb_client_query(test.client, &scene, check_end, &instant), FMB_OK);
+        assert_int_equal(instant.given, 60);
+        assert_int_equal(instant.undecided, 0);
+        free(pair);
+        free(frame);
+    }
 }
 
 /* A method that the service does not know is refused by it, pair by pair. */
@@ -988,6 +1082,7 @@ int main(int argc, char **argv)
         RELAY_TEST(wrong_scenes_are_refused),
         RELAY_TEST(a_scene_of_zeros_queries_all_pairs),
         RELAY_TEST(bodies_that_move_need_a_window),
+        RELAY_TEST(ends_are_answered),
         RELAY_TEST(refusals_of_the_service_are_given),
         cmocka_unit_test(bodies_go_by_handle_the_second_time),
         cmocka_unit_test(equal_ids_of_two_clients_do_not_matter),

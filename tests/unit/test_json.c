@@ -452,6 +452,9 @@ static void assert_same_scenes(const struct owned_scene *a, const struct owned_s
         assert_same_bits(one->position, other->position, 3);
         assert_same_bits(one->velocity, other->velocity, 3);
         assert_same_bits(one->orientation, other->orientation, 4);
+        assert_int_equal(one->end_count, other->end_count);
+        assert_same_bits(one->end_position, other->end_position, 3);
+        assert_same_bits(one->end_orientation, other->end_orientation, 4);
         assert_int_equal(one->body->frame_count, other->body->frame_count);
         for (unsigned k = 0; k < one->body->frame_count; k++) {
             const struct fmb_frame *frame = fmb_body_frame(one->body, k),
@@ -474,6 +477,23 @@ static void assert_same_scenes(const struct owned_scene *a, const struct owned_s
     }
 }
 
+/* Reads the bodies of a scene, and checks that they are read again after they were written. */
+static struct owned_scene read_twice(const char *text)
+{
+    char *written;
+    size_t size;
+    struct owned_scene scene = read_one(text);
+    FILE *out = open_memstream(&written, &size);
+    assert_non_null(out);
+    scene_json_write(out, &scene);
+    fclose(out);
+    struct owned_scene again = read_one(written);
+    assert_same_scenes(&scene, &again);
+    scene_clear(&again);
+    free(written);
+    return scene;
+}
+
 /* In a scene that is read, written and read again. A size of -0 is 0 in the engine. */
 static void the_sign_of_zero_is_kept(void **state)
 {
@@ -487,10 +507,9 @@ static void the_sign_of_zero_is_kept(void **state)
         "{\"shape\": \"box\", \"size\": [1,1,1], \"position\": [-0,-0,-0]},"
         "{\"shape\": \"face\", \"origin\": [-0,-0,-0], \"components\": [[-0,-0,1],[-0,1,-0]]}]},"
         "{\"id\": 4, \"shape\": \"face\", \"position\": [-0,1,1], \"origin\": [-0,-0,-0],"
-        " \"components\": [[-0,-0,1],[-0,1,-0]]}]}";
-    char *written;
-    size_t size;
-    struct owned_scene scene = read_one(text);
+        " \"components\": [[-0,-0,1],[-0,1,-0]], \"end\": {\"position\": [-0,-0,-0],"
+        " \"orientation\": [1,-0,-0,-0]}}]}";
+    struct owned_scene scene = read_twice(text);
     const struct fmb_placement *body = scene.scene.placements;
     const struct fmb_frame *box = fmb_body_frame(body[2].body, 0),
                            *face = fmb_body_frame(body[2].body, 1);
@@ -504,15 +523,62 @@ static void the_sign_of_zero_is_kept(void **state)
     assert_minus_zero(face->origin, 3);
     assert_minus_zero(face->component[1], 1);
     assert_minus_zero(fmb_body_frame(body[3].body, 0)->origin, 3);
-    FILE *out = open_memstream(&written, &size);
-    assert_non_null(out);
-    scene_json_write(out, &scene);
-    fclose(out);
-    struct owned_scene again = read_one(written);
-    assert_same_scenes(&scene, &again);
-    scene_clear(&again);
+    assert_minus_zero(body[3].end_position, 3);
+    assert_minus_zero(body[3].end_orientation + 1, 3);
     scene_clear(&scene);
-    free(written);
+}
+
+/* What is missing of an end is as at the begin; and a body that turns has an orientation there. */
+static void ends_are_read_and_written(void **state)
+{
+    static const struct {
+        const char *members;
+        double position, turn[2], end_position, end_turn[2]; /* x; w and z */
+        int count;                                           /* of numbers of the end */
+    } cases[] = {
+        {"\"position\": [0.1,0], \"end\": {\"position\": [1e-300,0]}",
+         0.1,
+         {0, 0},
+         1e-300,
+         {0, 0},
+         2},
+        {"\"position\": [0.1,0], \"end\": {\"orientation\": [3,-2]}", 0.1, {1, 0}, 0.1, {3, -2}, 4},
+        {"\"orientation\": [2,1], \"end\": {\"position\": [7,0]}", 0, {2, 1}, 7, {2, 1}, 4},
+        {"\"orientation\": [2,1], \"end\": {}", 0, {2, 1}, 0, {2, 1}, 4},
+        {"\"end\": {}", 0, {0, 0}, 0, {0, 0}, 2},
+        {"\"end\": {\"orientation\": [-1,0.1], \"position\": [1,0]}, \"orientation\": [1,1]",
+         0,
+         {1, 1},
+         1,
+         {-1, 0.1},
+         4},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        char text[300];
+        snprintf(text, sizeof text,
+                 "{\"dim\": 2, \"bodies\": [{\"id\": 1, \"shape\": \"box\", \"size\": [1,1], %s}]}",
+                 cases[i].members);
+        struct owned_scene scene = read_twice(text);
+        const struct fmb_placement *body = scene.scene.placements;
+        assert_int_equal(body->end_count, cases[i].count);
+        assert_int_equal(body->orientation_count, cases[i].count - 2);
+        assert_same_bits(body->position, &cases[i].position, 1);
+        assert_same_bits(body->orientation, cases[i].turn, 2);
+        assert_same_bits(body->end_position, &cases[i].end_position, 1);
+        assert_same_bits(body->end_orientation, cases[i].end_turn, 2);
+        scene_clear(&scene);
+    }
+    /* origin is the position of the body, about which it turns, since orientation is missing. */
+    struct owned_scene scene = read_twice(
+        "{\"dim\": 3, \"bodies\": [{\"id\": 1, \"shape\": \"cuboid\", \"origin\": [5,0,0], "
+        "\"components\": "
+        "[[1,0,0],[0,1,0],[0,0,1]], \"end\": {\"orientation_xyzw\": [0,0,2,3]}}]}");
+    const struct fmb_placement *body = scene.scene.placements;
+    assert_true(body->position[0] == 5 && body->end_position[0] == 5);
+    assert_true(fmb_body_frame(body->body, 0)->origin[0] == 0);
+    assert_true(body->orientation[0] == 1 && body->end_orientation[0] == 3 &&
+                body->end_orientation[3] == 2);
+    scene_clear(&scene);
 }
 
 /* What is read of a body, after it was written: a radius and the vertices of one hull. */
@@ -811,6 +877,34 @@ static const struct {
      "bodies[0].components[2][2]"},
     {SCENE("{\"id\":1,\"velocity\":[0,0]," CUBE "}"), "bodies[0].velocity"},
     {SCENE("{\"id\":1,\"velocity\":null," CUBE "}"), "bodies[0].velocity"},
+    {SCENE(BODY(1) "," BODY(2) "," BODY(3) ",{\"id\":4,\"end\":{\"orientation\":[0,0,0,1]}," CUBE
+                                           "}"),
+     "bodies[3].end.orientation"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation\":[5,0,0,0]}," CUBE "}"),
+     "bodies[0].end.orientation: half a turn away, which takes two windows, or not from 1/4"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation_xyzw\":[0,0,0,0.2]}," CUBE "}"),
+     "bodies[0].end.orientation_xyzw: half a turn"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation\":[0,0,0,0]}," CUBE "}"),
+     "bodies[0].end.orientation: a quaternion of zeros"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0,0,1e-70]}," CUBE "}"),
+     "bodies[0].end.orientation: the numbers differ in size"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0,0,1e999]}," CUBE "}"),
+     "bodies[0].end.orientation[3]"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0]}," CUBE "}"), "bodies[0].end.orientation"},
+    {SCENE("{\"id\":1,\"end\":{\"position\":[1,0,1e999]}," CUBE "}"), "bodies[0].end.position[2]"},
+    {SCENE("{\"id\":1,\"end\":{\"position\":[1,0]}," CUBE "}"), "bodies[0].end.position"},
+    {SCENE("{\"id\":1,\"end\":{\"velocity\":[1,0,0]}," CUBE "}"),
+     "bodies[0].end: unknown key \"velocity\" (there are position, orientation, orientation_xyzw)"},
+    {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0,0,0],\"orientation_xyzw\":[0,0,0,1]}," CUBE
+           "}"),
+     "bodies[0].end: both \"orientation\" and \"orientation_xyzw\""},
+    {SCENE("{\"id\":1,\"end\":[0,0,1]," CUBE "}"), "bodies[0].end"},
+    {SCENE("{\"id\":1,\"end\":{},\"velocity\":[0,0,0]," CUBE "}"),
+     "bodies[0]: both \"velocity\" and \"end\""},
+    {SCENE("{\"id\":1,\"frames\":[{\"end\":{},\"shape\":\"sphere\",\"radius\":1}]}"),
+     "bodies[0].frames[0]: unknown key \"end\""},
+    {"{\"dim\":3,\"bodies\":[{\"id\":1,\"end\":{}," CUBE "}],\"duration\":0}",
+     "bodies[0].end: \"duration\" is 0"},
     {SCENE_PAIRS("{}"), "pairs"},
     {"{\"label\":\"a\\n\",\"dim\":3,\"bodies\":[]}", "label"},
     {"{\"label\":7,\"dim\":3,\"bodies\":[]}", "label"},
@@ -1099,6 +1193,7 @@ int main(void)
         cmocka_unit_test(numbers_are_written_short),
         cmocka_unit_test(ends_that_differ_look_different),
         cmocka_unit_test(the_sign_of_zero_is_kept),
+        cmocka_unit_test(ends_are_read_and_written),
         cmocka_unit_test(round_shapes_are_read_back),
         cmocka_unit_test(cylinders_are_enclosed),
         cmocka_unit_test(pairs_may_have_names),
