@@ -47,9 +47,8 @@ static const char usage[] =
     "                   or deepest points\n"
     "  --certificate    give a proof of each verdict too. It is checked here with the\n"
     "                   numbers of the scene alone; a verdict without a valid proof\n"
-    "                   counts as not decided. A pair with a body of several frames,\n"
-    "                   or one with an end, has a verdict, but no certificate; their\n"
-    "                   number is reported.\n"
+    "                   counts as not decided. A pair with a body of several frames\n"
+    "                   has a verdict, but no certificate; their number is reported.\n"
     "                   The service decides each pair by a query of its own, which\n"
     "                   takes longer\n"
     "  --html FILE      write a page that plays the scenes into FILE; implies --box\n"
@@ -109,7 +108,7 @@ struct query {
     const struct fmb_scene *scene;
     int64_t pairs, answered; /* of the scene */
     bool undecided;          /* a pair has no verdict */
-    uint64_t unproven;       /* pairs without a certificate: a body has several frames or an end */
+    uint64_t unproven;       /* pairs without a certificate because a body has several frames */
     bool has_margin;         /* a scene has a margin */
     int64_t scenes, empty;   /* empty: scenes without a pair to decide */
     bool moves;              /* a body moves in a scene whose duration is not 0 */
@@ -266,7 +265,7 @@ static void report_limits(const struct query *query)
     char text[NUMBER_TEXT_MAX];
     scene_report_outside(query->input, query->outside);
     if (query->unproven > 0)
-        complain("no certificate for %s of the pairs: a body has several frames or an end",
+        complain("no certificate for %s of the pairs: a body has several frames",
                  number_grouped((int64_t) query->unproven, text));
     if (query->fail_if == 2 * FMB_SEPARATED + 1 && query->scene && !query->has_margin)
         complain("--fail-if near: no scene has a \"margin\", so no separated pair is near");

@@ -26,7 +26,7 @@ void answers_bus_close(struct answers_bus *answers);
 bool answers_bus_scene(struct answers_bus *answers, struct owned_scene *scene,
                        fmb_client_sink *sink, void *user);
 
-/* Whether both bodies of a pair have one frame and no end: others have no certificate. */
+/* Whether both bodies of a pair have one frame: others have no certificate. */
 bool pair_is_certified(const struct fmb_scene *scene, const unsigned pair[2]);
 
 enum { VERIFY_TEXT_MAX = 256 };

@@ -44,14 +44,10 @@ void answers_local(struct owned_scene *scene, fmb_client_sink *sink, void *user)
     }
 }
 
-static bool is_certified(const struct fmb_placement *placement)
-{
-    return placement->body->frame_count == 1 && placement->end_count == 0;
-}
-
 bool pair_is_certified(const struct fmb_scene *scene, const unsigned pair[2])
 {
-    return is_certified(&scene->placements[pair[0]]) && is_certified(&scene->placements[pair[1]]);
+    return scene->placements[pair[0]].body->frame_count == 1 &&
+           scene->placements[pair[1]].body->frame_count == 1;
 }
 
 void verify_answer(const struct fmb_scene *scene, const char *whose,

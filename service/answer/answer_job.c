@@ -392,16 +392,12 @@ static bool find_one(struct answer_job *job, int32_t i)
     return count_frames(job, i, cached->body.frame_count);
 }
 
-/* If a certificate is wanted, both bodies must have one frame, and no end. */
+/* If a certificate is wanted, both bodies must have one frame. */
 static bool check_certificate(struct answer_job *job)
 {
-    if (!job->is_pair || !(job->pair.want & FMB_WANT_CERTIFICATE))
-        return true;
-    const bool ends = job->placements[0].placed.end_count || job->placements[1].placed.end_count;
-    return (job->frames == 2 && !ends) ||
+    return !job->is_pair || !(job->pair.want & FMB_WANT_CERTIFICATE) || job->frames == 2 ||
            check_refuse(at(job, -1), FMB_CANNOT_DECIDE, "want",
-                        job->frames == 2 ? "a certificate is for bodies without an end pose"
-                                         : "a certificate is for bodies of one frame");
+                        "a certificate is for bodies of one frame");
 }
 
 /* Finds the body of placement i, which has frames; or makes it, at most *frames frames a call, and

@@ -638,7 +638,7 @@ squares() {
         {\"id\": 3, \"frames\": [{$box}, {$box, \"position\": [5,0]}]}]}"
     query "$scene" --certificate --fail-if overlapping
     ended 3
-    said 'fmb: no certificate for 2 of the pairs: a body has several frames or an end'
+    said 'fmb: no certificate for 2 of the pairs: a body has several frames'
     jq -e '[.pairs[] | [.a, .b, .verdict, has("certificate")]] ==
         [[1, 2, "touching", true], [1, 3, "overlapping", false], [2, 3, "touching", false]]' <<< "$output"
 }

@@ -96,7 +96,7 @@ static enum fmb_status find_pair(struct model *model, const struct pair_query *q
         if (model_by_handle(&query->placement[f]))
             status = model_find(model, &query->placement[f], &made[f]);
     for (int f = 0; f < 2 && status == FMB_OK && query->want & FMB_WANT_CERTIFICATE; f++)
-        if (frames_of(model, &query->placement[f]) > 1 || query->placement[f].placed.end_count > 0)
+        if (frames_of(model, &query->placement[f]) > 1)
             status = FMB_CANNOT_DECIDE;
     for (int f = 0; f < 2 && status == FMB_OK; f++)
         if (!model_by_handle(&query->placement[f]))

@@ -394,8 +394,6 @@ static void bad_ends_are_refused(void **state)
     REFUSED(set_end(b, turned); b->placed.orientation_count = 0, FMB_WRONG_COUNT, "b.num_end_pose: expected 3 numbers, found 7");
     REFUSED(set_end(b, turned); b->velocity_count = 3, FMB_WRONG_COUNT, "b.num_end_pose: a velocity too");
     REFUSED(set_end(b, turned); query.duration = 0, FMB_BAD_DURATION, "b.num_end_pose: the duration is 0");
-    REFUSED(set_end(b, turned); query.want = FMB_WANT_CERTIFICATE, FMB_CANNOT_DECIDE,
-            "want: a certificate is for bodies without an end pose");
     REFUSED(query = squares(); set_end(a, (double[4]){0, 1}), FMB_BAD_ORIENTATION, detail);
     REFUSED(query = squares(); set_end(a, turned); a->placed.end_count = 5, FMB_WRONG_COUNT,
             "a.num_end_pose: expected 4 numbers, found 5");
