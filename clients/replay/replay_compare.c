@@ -176,18 +176,12 @@ static struct exchange exchange_of(struct replay *replay, const struct logged_re
         .query = &replay->compared, .result = result, .names = replay->options->names};
 }
 
-/* Whether queries are read also where nothing has to be compared. */
-static bool reads_all(const struct replay *replay)
-{
-    return replay->options->page || replay->options->labels;
-}
-
 static void compare_unrecorded(struct replay *replay, const struct match_item *query,
                                const struct new_result *answered)
 {
     struct exchange then = exchange_of(replay, NULL), now = exchange_of(replay, &replay->now);
     const enum replay_outcome outcome = answered->not_held ? REPLAY_NOT_HELD : REPLAY_UNRECORDED;
-    if (reads_all(replay) && !read_compared(replay, query))
+    if ((replay->options->page || replay->options->labels) && !read_compared(replay, query))
         return;
     count(replay, query, outcome, 0);
     if (!replay->options->page)
@@ -246,7 +240,7 @@ void replay_compare(struct replay *replay, const struct match_item *query,
         return;
     const bool same = compare_bytes_same(kind, then, size, answered->bytes, answered->size);
     /* Results of both types end with compute_ns. */
-    if (same && !reads_all(replay) && !query->other->has_own)
+    if (same && !replay->options->page && !replay->options->labels && !query->other->has_own)
         count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
     else
         compare_read(replay, query, answered, size, same);
