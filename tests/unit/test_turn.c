@@ -722,6 +722,113 @@ static void random_windows_agree_with_static_poses(void **state)
     assert_true(counts[0] <= 12 && counts[FMB_SEPARATED] > 100 && counts[FMB_OVERLAPPING] > 100);
 }
 
+/* ---- Scenes ---- */
+
+/* Answers of a scene in steps: those of fmb_decide() for each pair, bit for bit. */
+static void scenes_give_the_answers_of_single_pairs(void **state)
+{
+    enum { BODIES = 14 };
+    const unsigned want = FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT;
+    static struct fmb_body body[BODIES];
+    static struct fmb_frame parts[BODIES][2];
+    static double memory[BODIES][400];
+    struct fmb_placement placement[BODIES];
+    unsigned pairs[BODIES * BODIES][2], count = 0;
+    seed_of_draw = 5;
+    for (unsigned i = 0; i < BODIES; i++) {
+        draw_body(3, memory[i], &body[i]);
+        if (i % 4 == 3) {
+            parts[i][0] = body[i].one, parts[i][1] = body[i - 1].one;
+            assert_int_equal(fmb_body_make_frames(parts[i], 2, &body[i]), FMB_OK);
+        }
+        draw_placement(&body[i], i % 3 > 0, &placement[i]);
+        for (unsigned j = 0; j < i; j++, count++)
+            pairs[count][0] = j, pairs[count][1] = i;
+    }
+    struct fmb_scene scene = {.placements = placement,
+                              .placement_count = BODIES,
+                              .duration = 2,
+                              .want = want,
+                              .which = FMB_PAIRS_LISTED,
+                              .pairs = (const unsigned(*)[2]) pairs,
+                              .pair_count = count};
+    struct fmb_scene_limits limits;
+    struct fmb_scene_answers answers;
+    struct fmb_scene_state *scene_state;
+    fmb_scene_limits_of(&scene, &limits);
+    void *memory_of_scene = malloc(fmb_scene_bytes(&limits));
+    assert_int_equal(fmb_scene_begin(&scene, &limits, memory_of_scene, &scene_state), FMB_OK);
+    unsigned next = 0;
+    for (bool done = false; !done;) {
+        done = fmb_scene_step(scene_state, &answers);
+        for (size_t k = 0; k < answers.count; k++, next++) {
+            struct fmb_answer one, other;
+            fmb_scene_answer(&answers, k, &other);
+            const enum fmb_status status =
+                fmb_decide(fmb_method_default(), &placement[pairs[next][0]],
+                           &placement[pairs[next][1]], 2, want, &one);
+            assert_int_equal(status == FMB_OK, other.verdict != 0);
+            assert_memory_equal(&one, &other, sizeof one);
+        }
+    }
+    assert_int_equal(next, count);
+    free(memory_of_scene);
+}
+
+/* A pair without a verdict is among the answers where all pairs are asked for. */
+static void pairs_without_a_verdict_are_named(void **state)
+{
+    static const double q0[4] = {4, 0, 0, 0}, q1[4] = {4, 1, 0, 0};
+    static const double plate_vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    struct fmb_body plate, point;
+    double memory[2][64];
+    assert_int_equal(fmb_body_make_hull(3, plate_vertices, 12, memory[0], &plate), FMB_OK);
+    assert_int_equal(
+        fmb_body_make_hull(3, (const double[]){0.25, 0.625, 0.125}, 3, memory[1], &point), FMB_OK);
+    const struct fmb_placement pair[3] = {
+        turning(&plate, q0, q1), {.body = &point}, {.body = &point, .position = {50, 0, 0}}};
+    struct fmb_scene scene = {.placements = pair, .placement_count = 3, .duration = 1};
+    struct fmb_scene_limits limits;
+    struct fmb_scene_answers answers;
+    struct fmb_scene_state *scene_state;
+    size_t count = 0;
+    fmb_scene_limits_of(&scene, &limits);
+    void *memory_of_scene = malloc(fmb_scene_bytes(&limits));
+    assert_int_equal(fmb_scene_begin(&scene, &limits, memory_of_scene, &scene_state), FMB_OK);
+    for (bool done = false; !done; count += answers.count) {
+        done = fmb_scene_step(scene_state, &answers);
+        for (size_t k = 0; k < answers.count; k++)
+            assert_true(answers.verdicts[k] == 0 && answers.pairs[k][0] + answers.pairs[k][1] == 1);
+    }
+    assert_int_equal(count, 1);
+    free(memory_of_scene);
+}
+
+/* Numbers whose exponents span a thousand bits: both orders give the same, and the work ends. */
+static void hostile_exponents_end(void **state)
+{
+    seed_of_draw = 9;
+    for (int k = 0; k < 12; k++) {
+        struct fmb_body body[2];
+        struct fmb_placement pair[2];
+        struct fmb_answer answer, swapped;
+        for (int f = 0; f < 2; f++) {
+            double number[12];
+            for (int i = 0; i < 12; i++)
+                number[i] = ldexp(draw(-9, 9), draw(-500, 500));
+            assert_int_equal(fmb_body_make(3, FMB_CUBOID, number, 12, &body[f]), FMB_OK);
+            draw_placement(&body[f], true, &pair[f]);
+            for (int axis = 0; axis < 3; axis++)
+                pair[f].end_position[axis] = ldexp(draw(-9, 9), draw(-500, 500));
+        }
+        const enum fmb_status status =
+            fmb_decide(fmb_method_default(), &pair[0], &pair[1], 2, all_but_gap, &answer);
+        assert_int_equal(
+            fmb_decide(fmb_method_default(), &pair[1], &pair[0], 2, all_but_gap, &swapped), status);
+        assert_memory_equal(&answer, &swapped, sizeof answer);
+    }
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -741,6 +848,9 @@ int main(void)
         cmocka_unit_test(the_end_of_a_graze_is_that_of_exact_poses),
         cmocka_unit_test(numbers_of_any_size),
         cmocka_unit_test(random_windows_agree_with_static_poses),
+        cmocka_unit_test(scenes_give_the_answers_of_single_pairs),
+        cmocka_unit_test(pairs_without_a_verdict_are_named),
+        cmocka_unit_test(hostile_exponents_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
