@@ -26,7 +26,7 @@ struct check_side {
     mpq_t origin[AXES];
     mpq_t edge[AXES][AXES]; /* the components */
     mpq_t velocity[AXES];
-    mpq_t orientation[4], position[AXES]; /* at the beginning; check_set_pose(): at a time */
+    mpq_t orientation[4], position[AXES]; /* at the beginning, then at the time of the proof */
     mpq_t late_orientation[4], late_position[AXES]; /* at the end of the window, if a frame turns */
     mpq_t low, high;        /* of the normal over the frame at time 0, in the world */
     mpq_t sum[AXES], total; /* of weighted vertices; of weights: stated ones only */
