@@ -226,13 +226,13 @@ static inline void query_remove_far_gap(double margin, struct fmb_answer *answer
     memset(&answer->gap, 0, sizeof answer->gap);
 }
 
-/* Whether two gaps are equal bit for bit. */
+/* Whether two gaps are equal bit for bit. Messages have the time with witness points only. */
 static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap *b)
 {
     return a->has_witness == b->has_witness &&
            memcmp(a->bounds, b->bounds, sizeof a->bounds) == 0 &&
            memcmp(a->direction, b->direction, sizeof a->direction) == 0 &&
-           memcmp(&a->time, &b->time, sizeof a->time) == 0 &&
+           (!a->has_witness || memcmp(&a->time, &b->time, sizeof a->time) == 0) &&
            memcmp(a->witness, b->witness, sizeof a->witness) == 0 &&
            memcmp(a->frame, b->frame, sizeof a->frame) == 0;
 }

@@ -381,8 +381,11 @@ static void inconsistent_results_are_refused(void **state)
 /* Only the padding, 7 bytes after has_witness, does not count. */
 static void answers_that_differ_in_any_byte_are_not_the_same(void **state)
 {
-    const struct fmb_answer full = {
-        .has_contact = true, .has_box = true, .has_gap = true, .has_point = true};
+    const struct fmb_answer full = {.has_contact = true,
+                                    .has_box = true,
+                                    .has_gap = true,
+                                    .has_point = true,
+                                    .gap.has_witness = true};
     size_t same = 0;
     for (size_t i = 0; i < sizeof full; i++) {
         struct fmb_answer other;

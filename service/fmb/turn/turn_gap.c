@@ -182,7 +182,6 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_ga
             if (!gap->separated) {
                 out->bounds[1] = fmin(out->bounds[1], 0);
                 out->has_witness = false;
-                out->time = 0;
                 memset(out->witness, 0, sizeof out->witness);
             }
             *failed = !(out->bounds[1] - out->bounds[0] <= gap->tight);
