@@ -626,9 +626,20 @@ squares() {
         {"id": 2, "shape": "cuboid", "origin": [1e200,0], "components": [[1,0],[0,1]]}]}'
     query "$scene" --certificate
     ended 1
-    [ "$(jq -r '.pairs[0].error' <<< "$output")" = "no certificate: numbers that span more than 512 bits have none" ]
+    [ "$(jq -r '.pairs[0].error' <<< "$output")" = "no certificate: bodies that turn and touch have none, nor have numbers that span more than 512 bits" ]
     query "$scene"
     ended 0
+}
+
+@test "bodies that turn have certificates, which hold, unless they touch" {
+    door='{"dim": 3, "bodies": [{"id": 1, "shape": "box", "size": [1,1,1], "orientation": [1,0,0,0], "end": {"orientation": [1,1,0,0]}},
+        {"id": 2, "shape": "box", "size": [1,1,1], "position": [1,0,0]}, {"id": 3, "shape": "box", "size": [1,1,1], "position": [0,1.125,0]},
+        {"id": 4, "shape": "box", "size": [1,1,1], "position": [-2,0,0]}], "pairs": [[1,2], [1,3], [1,4]]}'
+    query "$door" --certificate
+    ended 1
+    jq -e '[.pairs[] | .verdict // .error | .[:14]] == ["no certificate", "overlapping", "separated"]' <<< "$output"
+    jq -e '.pairs[1].certificate | test("^overlapping at [0-9/]+ a .* b ")' <<< "$output"
+    jq -e '.pairs[2].certificate == "separated from 0 to 1 normal b (-1 0 0)"' <<< "$output"
 }
 
 # bats test_tags=release

@@ -925,14 +925,20 @@ static void certificates_are_given_on_request(void **state)
 {
     const double apart[] = {0.5, 1, 1.5};
     const enum fmb_verdict verdict[] = {FMB_OVERLAPPING, FMB_TOUCHING, FMB_SEPARATED};
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 9; i++) {
         struct pair_query query = cubes();
         query.placement[1].placed.position[0] = apart[i % 3];
+        if (i >= 6) /* about x, which keeps the verdict; one that touches has no certificate */
+            set_end(&query.placement[1], (double[4]){1, 1, 0, 0});
         query.placement[0].velocity_count = i >= 3 ? 3 : 0;
         query.placement[0].placed.velocity[1] = 0.25;
         query.want = FMB_WANT_CERTIFICATE;
         struct pair_result result = answer_to(&query);
         assert_int_equal(result.answer.verdict, verdict[i % 3]);
+        if (i == 7) {
+            assert_null(result.certificate);
+            continue;
+        }
         assert_true(certified(&query, &result));
         assert_false(result.answer.has_box);
         char text[200];
