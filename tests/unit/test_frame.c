@@ -367,7 +367,7 @@ static struct fmb_body plane_body, space_body;
 static struct pair plane_pair(void)
 {
     plane_body = make_body(2, unit2);
-    return (struct pair){{.body = &plane_body}, {.body = &plane_body}, 1};
+    return (struct pair){{.body = &plane_body}, {.body = &plane_body}, .duration = 1};
 }
 
 /* With which all methods decide a pair, or refuse it. */

@@ -464,7 +464,7 @@ static void turned_slabs_are_gmp(void **state)
         limbs_prepare(&integers, &limbs);
         memset(&exact, 0, sizeof exact);
         support_integers_each(&exact, mpz_init);
-        support_integers_set(&frames, &exact);
+        support_integers_set(&frames, false, 0, &exact);
         for (int k = 0; k < 6; k++) {
             const struct slab_normal edges = draw_normal(&draw, &question);
             const int sign = compare_posed(&question, &limbs, &exact, edges);

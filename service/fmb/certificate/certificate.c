@@ -6,7 +6,7 @@
 #include "integer.h"
 #include "memory.h"
 #include "support_search.h"
-#include "turn.h"
+#include "turn_decision.h"
 
 #include <math.h>
 #include <string.h>

@@ -21,7 +21,7 @@
 #include "kernel.h"
 #include "limbs.h"
 #include "support_decision.h"
-#include "turn.h"
+#include "turn_decision.h"
 
 /* The rungs: what may decide a verdict, in the order in which it is tried. The filter; its second
  * pass; the slabs that these leave open, in integers; all slabs, in integers; the programs. */

@@ -1,4 +1,4 @@
-#include "turn.h"
+#include "turn_decision.h"
 
 #include "aabb.h"
 #include "programs.h"

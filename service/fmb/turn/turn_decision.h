@@ -25,8 +25,8 @@
  *
  * Steps: a search in doubles takes microseconds, one exact direction of a small pair tens of them,
  * a step of the programs less than a millisecond. No shared state. */
-#ifndef FMB_TURN_H
-#define FMB_TURN_H
+#ifndef FMB_TURN_DECISION_H
+#define FMB_TURN_DECISION_H
 
 #include "turn_exact.h"
 #include "turn_gap.h"
