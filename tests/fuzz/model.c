@@ -230,12 +230,16 @@ struct fmb_placement model_place(const struct query_placement *placement,
                                  const struct model_made *made)
 {
     struct fmb_placement out = {.body = &made->body,
-                                .orientation_count = placement->placed.orientation_count};
+                                .orientation_count = placement->placed.orientation_count,
+                                .end_count = placement->placed.end_count};
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         out.position[axis] = placement->placed.position[axis];
         out.velocity[axis] = placement->placed.velocity[axis];
+        out.end_position[axis] = placement->placed.end_position[axis];
     }
-    for (int i = 0; i < placement->placed.orientation_count; i++)
+    for (int i = 0; i < placement->placed.orientation_count; i++) {
         out.orientation[i] = placement->placed.orientation[i];
+        out.end_orientation[i] = placement->placed.end_orientation[i];
+    }
     return out;
 }
