@@ -496,7 +496,8 @@ struct fmb_method {
  * flat and cross, or stay in one plane, so that doubles do not decide; frames with a radius that
  * touch, or that doubles leave open; gaps that are not enclosed within the limit; and what takes
  * more work than a limit. Frames that rest, slide, roll, hang on a hinge, land, lift off or turn
- * together have a verdict if the numbers say so exactly.
+ * together have a verdict if the numbers say so exactly. Scenes and batches for verdicts alone
+ * decide a few pairs more: fmb_decide() always encloses the contact too.
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
  * bounded for any numbers, as the time of certified is: among pairs whose exponents span the whole
