@@ -51,7 +51,9 @@ struct scene_outcomes {
     double box[BLOCK][2][FMB_DIM_MAX];
     double point[BLOCK][1 + FMB_DIM_MAX];
     unsigned point_frames[BLOCK][2]; /* in answers of bodies: the frames that have the point */
-    bool undecided[BLOCK];           /* in answers of bodies: a pair of frames has no verdict */
+    /* In answers of bodies: a pair of frames has no verdict. Not bool: copied where it is not set.
+     */
+    unsigned char undecided[BLOCK];
     struct fmb_gap gap[BLOCK];
 };
 
