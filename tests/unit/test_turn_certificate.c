@@ -281,11 +281,11 @@ static void random_pairs(void **state)
         counts[answer.verdict]++;
         for (int f = 0; f < 2; f++) {
             const struct fmb_placement *of = f ? back : pair;
-            assert_int_equal(
-                fmb_certificate(&of[0], &of[1], 2, text[f], FMB_CERTIFICATE_MAX, &length[f]),
-                status);
-            if (status != FMB_OK)
+            const enum fmb_status given =
+                fmb_certificate(&of[0], &of[1], 2, text[f], FMB_CERTIFICATE_MAX, &length[f]);
+            if (status != FMB_OK) /* the contact is not enclosed: the verdict may be known */
                 continue;
+            assert_int_equal(given, FMB_OK);
             for (enum fmb_verdict verdict = FMB_SEPARATED; verdict <= FMB_OVERLAPPING; verdict++)
                 assert_int_equal(holds(of, 2, verdict, text[f]), verdict == answer.verdict);
             if (answer.verdict == FMB_OVERLAPPING)
