@@ -64,6 +64,31 @@ static void set_between(const struct fmb_placement *placement, double at, mpz_t 
     mpz_clear(other);
 }
 
+void support_integers_polar(mpz_t x[4], mpz_t y[4], unsigned factor, mpz_t out[3][3], mpz_t norm,
+                            mpz_t scratch)
+{
+    mpz_set_ui(norm, 0);
+    for (int k = 0; k < 4; k++) {
+        mpz_mul(scratch, x[k], y[k]);
+        mpz_mul_ui(scratch, scratch, factor);
+        mpz_add(norm, norm, scratch);
+        for (int i = 0; i < 3; i++)
+            (k == 0 || k == 1 + i ? mpz_add : mpz_sub)(out[i][i], out[i][i], scratch);
+    }
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        mpz_mul(out[i][j], x[1 + i], y[1 + j]);
+        mpz_addmul(out[i][j], x[1 + j], y[1 + i]);
+        mpz_set(out[j][i], out[i][j]);
+        mpz_mul(scratch, x[0], y[1 + k]);
+        mpz_addmul(scratch, x[1 + k], y[0]);
+        mpz_sub(out[i][j], out[i][j], scratch);
+        mpz_add(out[j][i], out[j][i], scratch);
+        mpz_mul_ui(out[i][j], out[i][j], factor);
+        mpz_mul_ui(out[j][i], out[j][i], factor);
+    }
+}
+
 static void set_turn(const struct fmb_placement *placement, bool posed, double at,
                      struct support_turn *turn)
 {
@@ -74,28 +99,10 @@ static void set_turn(const struct fmb_placement *placement, bool posed, double a
     else
         set_given(placement, q);
     turn->turned = mpz_sgn(q[1]) != 0 || mpz_sgn(q[2]) != 0 || mpz_sgn(q[3]) != 0;
-    mpz_set_ui(turn->norm, 1);
-    if (!turn->turned) {
-        mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
-        return;
-    }
-    mpz_set_ui(turn->norm, 0);
-    for (int k = 0; k < 4; k++) {
-        mpz_mul(product, q[k], q[k]);
-        mpz_add(turn->norm, turn->norm, product);
-        for (int i = 0; i < 3; i++) { /* ww is added; v_k v_k in row k too, else subtracted */
-            (k == 0 || k == 1 + i ? mpz_add : mpz_sub)(turn->row[i][i], turn->row[i][i], product);
-        }
-    }
-    for (int i = 0; i < 3; i++) { /* 2 (v_i v_j - w v_k) and 2 (v_i v_j + w v_k), i, j, k cyclic */
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        mpz_mul(product, q[1 + i], q[1 + j]);
-        mpz_mul_2exp(turn->row[i][j], product, 1);
-        mpz_set(turn->row[j][i], turn->row[i][j]);
-        mpz_mul(product, q[0], q[1 + k]);
-        mpz_submul_ui(turn->row[i][j], product, 2);
-        mpz_addmul_ui(turn->row[j][i], product, 2);
-    }
+    if (turn->turned)
+        support_integers_polar(q, q, 1, turn->row, turn->norm, product);
+    else
+        mpz_set_ui(turn->norm, 1);
     mpz_clears(q[0], q[1], q[2], q[3], product, NULL);
 }
 

@@ -42,6 +42,10 @@ void support_integers_each(struct support_integers *integers, void (*call)(mpz_p
 void support_integers_set(const struct frame_pair *frames, bool posed, double at,
                           struct support_integers *out);
 
+/* out := factor N(x, y), and norm := x . y, for quaternions x and y (motion.h). In: out is 0. */
+void support_integers_polar(mpz_t x[4], mpz_t y[4], unsigned factor, mpz_t out[3][3], mpz_t norm,
+                            mpz_t scratch);
+
 /* Returns a power of two that divides all lengths of a pair that turns. */
 long support_integers_unit(const struct frame_pair *frames);
 

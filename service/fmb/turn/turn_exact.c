@@ -77,32 +77,6 @@ static void between(const mpz_t x, const mpz_t y, const mpz_t i, mp_bitcnt_t bit
     mpz_add(out, out, scratch);
 }
 
-/* out := factor N(x, y), and x . y, of quaternions. */
-static void set_polar(mpz_t x[4], mpz_t y[4], unsigned factor, vector out[3], mpz_t norm,
-                      mpz_t scratch)
-{
-    mpz_set_ui(norm, 0);
-    for (int k = 0; k < 4; k++) {
-        mpz_mul(scratch, x[k], y[k]);
-        mpz_mul_ui(scratch, scratch, factor);
-        mpz_add(norm, norm, scratch);
-        for (int i = 0; i < 3; i++)
-            (k == 0 || k == 1 + i ? mpz_add : mpz_sub)(out[i][i], out[i][i], scratch);
-    }
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        mpz_mul(out[i][j], x[1 + i], y[1 + j]);
-        mpz_addmul(out[i][j], x[1 + j], y[1 + i]);
-        mpz_set(out[j][i], out[i][j]);
-        mpz_mul(scratch, x[0], y[1 + k]);
-        mpz_addmul(scratch, x[1 + k], y[0]);
-        mpz_sub(out[i][j], out[i][j], scratch);
-        mpz_add(out[j][i], out[j][i], scratch);
-        mpz_mul_ui(out[i][j], out[i][j], factor);
-        mpz_mul_ui(out[j][i], out[j][i], factor);
-    }
-}
-
 /* Sets the quadratics of both frames and the difference of the positions, at the ends of the
  * interval. Returns the bits by which lengths are scaled. */
 static mp_bitcnt_t set_interval(const struct turn_exact *exact, double lo, double hi,
@@ -122,8 +96,8 @@ static mp_bitcnt_t set_interval(const struct turn_exact *exact, double lo, doubl
             between(exact->q[f][0][i % 4], exact->q[f][1][i % 4], index[i / 4], bits,
                     q[i / 4][i % 4], work->scratch);
         for (int k = 0; k < 3; k++)
-            set_polar(q[k == 2], q[k > 0], k == 1 ? 2 : 1, of->matrix[k], of->norm[k],
-                      work->scratch);
+            support_integers_polar(q[k == 2], q[k > 0], k == 1 ? 2 : 1, of->matrix[k], of->norm[k],
+                                   work->scratch);
     }
     for (int e = 0; e < 2; e++)
         for (int axis = 0; axis < 3; axis++) {

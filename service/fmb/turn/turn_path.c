@@ -53,6 +53,14 @@ static void orientation_at(const double q[2][4], double s, double out[4])
         out[i] = (1 - s) * q[0][i] + s * q[1][i];
 }
 
+void turn_path_at(const struct turn_path *path, int f, double s, double q[4],
+                  double position[FMB_DIM_MAX])
+{
+    orientation_at(path->q[f], s, q);
+    for (int axis = 0; axis < path->pair.dim; axis++)
+        position[axis] = (1 - s) * path->position[f][0][axis] + s * path->position[f][1][axis];
+}
+
 void turn_path_pose(struct turn_path *path, double s)
 {
     struct support_pair *pair = &path->pair;
@@ -63,13 +71,9 @@ void turn_path_pose(struct turn_path *path, double s)
         pair->offset[axis] = (1 - s) * path->offset[0][axis] + s * path->offset[1][axis];
     for (int f = 0; f < 2; f++) {
         struct fmb_placement turned = {.orientation_count = 4};
-        for (int axis = 0; axis < pair->dim; axis++)
-            pair->position[f][axis] =
-                (1 - s) * path->position[f][0][axis] + s * path->position[f][1][axis];
-        if (!placed[f]->end_count || !placed[f]->orientation_count)
-            continue;
-        orientation_at((const double(*)[4]) path->q[f], s, turned.orientation);
-        rotation_of(&turned, pair->dim, &pair->view[f].rotation);
+        turn_path_at(path, f, s, turned.orientation, pair->position[f]);
+        if (placed[f]->end_count && placed[f]->orientation_count)
+            rotation_of(&turned, pair->dim, &pair->view[f].rotation);
     }
 }
 

@@ -55,6 +55,10 @@ struct turn_path {
 /* Sets the pair at its beginning. The pair points to frames and into itself: not to be copied. */
 void turn_path_set(const struct frame_pair *frames, struct turn_path *out);
 
+/* q, position := the pose of frame f at s, in [0, 1], rounded. */
+void turn_path_at(const struct turn_path *path, int f, double s, double q[4],
+                  double position[FMB_DIM_MAX]);
+
 /* Sets path->pair to the pose at s, a multiple of 2^-53 in [0, 1]. */
 void turn_path_pose(struct turn_path *path, double s);
 
