@@ -162,28 +162,13 @@ INLINE bool aabb_needs_ball(const struct fmb_prepared *frame)
                                                   frame->frame->shape != FMB_HULL));
 }
 
-/* Returns the box of a body, or of a frame of it, over the window, of a placement with an end.
- *
- * In:  box    [lower, upper][axis] of the body or the frame, in body coordinates
- *      reach  bounds the distance of its points from the origin of the body */
-struct aabb motion_box(const struct fmb_placement *placement, const double box[2][FMB_DIM_MAX],
-                       double reach);
-
-/* box := the box of a frame, in body coordinates. */
-void frame_box(const struct fmb_frame *frame, double box[2][FMB_DIM_MAX]);
-
-/* Returns the box of a prepared frame over the window [0, duration]. In: duration is legal. */
+/* Returns the box of a prepared frame over the window [0, duration]. In: duration is legal; the
+ * placement has no end, or the duration is 0. */
 INLINE struct aabb aabb_of(const struct fmb_prepared *frame, double duration)
 {
     const unsigned kind = prepared_kind(frame);
     const int dim = kind & PREPARED_3D ? 3 : 2;
     struct aabb out = {{{0}}};
-    if (prepared_has_end(frame) && duration > 0) {
-        double box[2][FMB_DIM_MAX];
-        frame_box(frame->frame, box);
-        return motion_box(frame->placement, (const double(*)[FMB_DIM_MAX]) box,
-                          frame->frame->reach);
-    }
     if (aabb_needs_ball(frame))
         aabb_of_ball(frame, &out);
     else if (kind & PREPARED_VERTICES && !(kind & (PREPARED_TETRAHEDRON | PREPARED_FACE)) &&

@@ -5,6 +5,7 @@
 #include "integer.h"
 #include "interval.h"
 #include "inverse.h"
+#include "motion.h"
 #include "prepared.h"
 #include "rotation.h"
 #include "vector.h"

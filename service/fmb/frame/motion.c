@@ -173,8 +173,9 @@ void fmb_pose_at(const struct fmb_placement *placement, double duration, double 
  * and the half extents h of the box. An entry of N(q, r) is off by 4.01 u L (motion.h), as w is;
  * the quotient of the two by 9.1 u (L / w)^2, and its product with m or h, all three summed, by
  * 12.2 u (L / w)^2 S; the sum of both by 1.1 u (L / w) S more. 24 u (L / w)^2 S covers this, and
- * the rounding of the bound, if L / w < 2^20. Otherwise, and wherever it is tighter, the box is
- * that of a ball of the reach about each position. */
+ * the rounding of the bound, if L / w < 2^20. Quaternions that are off by 3 u of their lengths move
+ * the quotients by 12 u (L / w)^2 more. Otherwise, and wherever it is tighter, the box is that of a
+ * ball of the reach about each position. */
 #define MOTION_BOX_ERROR (40 * 0x1p-53)
 
 void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_MAX], int dim,
@@ -232,4 +233,11 @@ struct aabb motion_box(const struct fmb_placement *placement, const double box[2
     for (int axis = 0; axis < placement->body->dim; axis++)
         out.end[axis] = (lanes){low[axis], -high[axis]};
     return out;
+}
+
+struct aabb motion_box_of(const struct fmb_prepared *frame)
+{
+    double box[2][FMB_DIM_MAX];
+    frame_box(frame->frame, box);
+    return motion_box(frame->placement, (const double(*)[FMB_DIM_MAX]) box, frame->frame->reach);
 }

@@ -36,6 +36,19 @@ void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_M
                         const double box[2][FMB_DIM_MAX], double reach, double low[FMB_DIM_MAX],
                         double high[FMB_DIM_MAX]);
 
+/* Returns the box of a body, or of a frame of it, over the window, of a placement with an end.
+ *
+ * In:  box    [lower, upper][axis] of the body or the frame, in body coordinates
+ *      reach  bounds the distance of its points from the origin of the body */
+struct aabb motion_box(const struct fmb_placement *placement, const double box[2][FMB_DIM_MAX],
+                       double reach);
+
+/* box := the box of a frame, in body coordinates. */
+void frame_box(const struct fmb_frame *frame, double box[2][FMB_DIM_MAX]);
+
+/* The same as motion_box() for a prepared frame. */
+struct aabb motion_box_of(const struct fmb_prepared *frame);
+
 /* out := N(q, r), [row][column]. Each entry is a sum of four products whose magnitudes sum to at
  * most |q| |r|, by Cauchy and Schwarz. It is off by at most 4.01 u |q| |r|. */
 INLINE void motion_polar(const double q[4], const double r[4], double out[FMB_DIM_MAX][FMB_DIM_MAX])

@@ -94,21 +94,35 @@ static bool is_prepared(const struct scene_frames *frames, const struct scene_ch
     return chunk->generation == frames->generation;
 }
 
+/* Sets the boxes of a chunk of count frames. turns: motion_turns() of its body. */
+INLINE void set_chunk_boxes(struct scene_frames *frames, struct scene_chunk *chunk, unsigned count,
+                            const bool turns)
+{
+    const unsigned first = chunk->slot;
+    for (unsigned i = first; i < first + count; i++) {
+        if (turns)
+            frames->frame_box[i] = motion_box_of(&frames->slot[i]);
+        else
+            frames->frame_box[i] = aabb_of(&frames->slot[i], frames->duration);
+        chunk->box =
+            i == first ? frames->frame_box[i] : aabb_union(chunk->box, frames->frame_box[i]);
+    }
+}
+
 /* Prepares chunk k of a body into its slots, and sets its boxes. */
 static void fill_chunk(struct scene_frames *frames, unsigned body, size_t k)
 {
     struct scene_chunk *chunk = chunk_of(frames, body, k);
-    const unsigned count = chunk_size(frames, body, k), first = chunk->slot;
+    const unsigned count = chunk_size(frames, body, k);
     prepared_place(&frames->placement[body], (unsigned) k * SCENE_CHUNK, count,
-                   &frames->slot[first]);
+                   &frames->slot[chunk->slot]);
     frames->work += WORK_PREPARE;
     if (!frames->boxed)
         return;
-    for (unsigned i = first; i < first + count; i++) {
-        frames->frame_box[i] = aabb_of(&frames->slot[i], frames->duration);
-        chunk->box =
-            i == first ? frames->frame_box[i] : aabb_union(chunk->box, frames->frame_box[i]);
-    }
+    if (motion_turns(&frames->placement[body], frames->duration))
+        set_chunk_boxes(frames, chunk, count, true);
+    else
+        set_chunk_boxes(frames, chunk, count, false);
 }
 
 /* The same, into the next slots. In: they suffice. */

@@ -21,6 +21,8 @@
  * results with those of all pairs (tests/unit/test_engine_tree.c). */
 #include "tree.h"
 
+#include "motion.h"
+
 #include <float.h>
 #include <limits.h>
 #include <stdint.h>
@@ -466,7 +468,8 @@ enum fmb_status fmb_tree_build(const struct fmb_boxes *boxes, size_t count, doub
 
 void fmb_box_of(const struct fmb_prepared *frame, double duration, double box[2][FMB_DIM_MAX])
 {
-    const struct aabb aabb = aabb_of(frame, duration);
+    const bool turns = prepared_has_end(frame) && duration > 0;
+    const struct aabb aabb = turns ? motion_box_of(frame) : aabb_of(frame, duration);
     aabb_get_ends(&aabb, box);
 }
 
