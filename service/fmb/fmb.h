@@ -306,10 +306,10 @@ struct fmb_placement {
      *
      *     p(s) = (1 - s) p0 + s p1,    q(s) = (1 - s) q0 + s c q1,    c the sign of q0 . q1
      *
-     * for position and orientation p0, q0 and those of the end p1, q1; these doubles are exact too.
-     * A body that begins without a rotation and turns has the orientation (1, 0, 0, 0). Windows
-     * that share a pose join exactly. A turn is less than 180 degrees; longer ones take several
-     * windows. */
+     * where p0 and q0 are position and orientation, and p1 and q1 are end_position and
+     * end_orientation; these doubles are exact too. A body that begins without a rotation and turns
+     * has the orientation (1, 0, 0, 0). Windows that share a pose join exactly. A turn is less than
+     * 180 degrees; a longer turn takes several windows. */
     double end_position[FMB_DIM_MAX], end_orientation[4];
     int end_count; /* 0: none; otherwise the dimension plus orientation_count */
     /* Not 0: in a scene, placements of one group are not tested against each other. */
@@ -324,19 +324,19 @@ struct fmb_placement {
  * Returns one of:
  *   FMB_OK
  *   FMB_NO_FRAMES        body is NULL or was not made
- *   FMB_WRONG_COUNT      orientation_count is neither 0 nor that of the dimension; it is 0 and
- *                        orientation is not all 0; end_count is neither 0 nor the dimension plus
+ *   FMB_WRONG_COUNT      orientation_count is neither 0 nor 4 (2D: 2); it is 0 and orientation is
+ *                        not all 0; end_count is neither 0 nor the dimension plus
  *                        orientation_count; or there are both an end and a velocity
- *   FMB_NOT_FINITE       position or velocity, or the position of the end
- *   FMB_BAD_ORIENTATION  the orientation is all 0, is not finite, or has a component other than 0
- *                        whose magnitude is less than 2^-200 of the largest; or that of the end is;
- *                        or the two quaternions are at right angles, or their lengths differ by
- *                        more than a factor of 4, all exactly */
+ *   FMB_NOT_FINITE       position, velocity, or the position of the end
+ *   FMB_BAD_ORIENTATION  the orientation, or the orientation of the end, is all 0, is not finite,
+ *                        or has a component other than 0 whose magnitude is less than 2^-200 of
+ *                        the largest; or the two quaternions are at right angles, or their lengths
+ *                        differ by more than a factor of 4; all are tested exactly */
 enum fmb_status fmb_placement_check(const struct fmb_placement *placement);
 
-/* Sets *out to the placement at a time, at rest there: for pictures, since the pose is rounded. At
- * 0 and at the duration, bodies with an end have the pose given, bit for bit. Times outside
- * the window are moved to its ends; in a window of 0 s the pose is that of time 0.
+/* Sets *out to a placement at rest in the pose at the given time. The pose is rounded: use it for
+ * pictures. At time 0 and at the duration, bodies with an end have the given pose, bit for bit.
+ * Times outside the window are clamped to it. In a window of 0 s every time counts as 0.
  *
  * In: placement  fmb_placement_check() accepts it; may be out
  *     duration   T, seconds; legal
@@ -361,17 +361,17 @@ enum fmb_want {
  *   separated    their least distance
  *   touching     0
  *   overlapping  minus the depth, the length of the shortest translation after which the bodies do
- *                not overlap at any time of the window; of a pair of which a placement has an end,
- *                the greatest depth at any one time
+ *                not overlap at any time of the window; if a placement has an end, minus the
+ *                greatest depth at any one time
  *
  * Of bodies of several frames it is the least gap of a pair of their frames, with its direction and
  * points; frame names that pair. If doubles cannot distinguish the gaps of several pairs, one of
  * these pairs is named. Its gap exceeds the least one by at most the width.
  *
  * Lower bound. The direction n proves it: n . (b - a) >= bounds[0] |n| for all points a of the
- * first frame and b of the second at the same time of the window. If a placement has an end: at the
- * time of the least distance or the greatest depth only; that a pair is separated over the window
- * is proven by its certificate.
+ * first frame and b of the second at the same time of the window. If a placement has an end, this
+ * holds only at the time of the least distance or the greatest depth; the certificate proves that a
+ * pair is separated over the window.
  *
  * Upper bound. For a separated pair the witness points prove it: |b - a| plus the distances of the
  * two points from their frames at that time is at most bounds[1]. For an overlapping pair,
@@ -398,10 +398,10 @@ enum fmb_want {
  * lower bound up to the same width. A bound, or a coordinate of a witness point, whose magnitude
  * exceeds the largest double is infinite, with its sign: the points then prove no upper bound.
  *
- * Pairs of which a placement has an end: the gap is the least at any one time, so that of an
- * overlapping pair is minus the greatest depth at one time. time is that of the least gap; the
- * direction proves the lower bound at this time only, the witness points of a separated pair the
- * upper one.
+ * Pairs in which a placement has an end: the gap is the least at any one time, so an overlapping
+ * pair has minus its greatest depth at one time. time is the time of the least gap. The direction
+ * proves the lower bound at this time only; the witness points of a separated pair prove the upper
+ * bound.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
  * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the
@@ -436,9 +436,10 @@ struct fmb_gap {
  * body if that is larger. It may be infinite if a vertex is a sum of components that exceeds the
  * largest double.
  *
- * Pairs of which a placement has an end: an end of a contact is at most 1e-12 T too far out. The
- * box contains the exact one and is not tight: it is the union, over sixteen parts of the contact,
- * of the intersections of boxes of both frames. Both methods give the same.
+ * Pairs in which a placement has an end: an end of a contact is at most 1e-12 T too far out. The
+ * box contains the exact box and is not tight. The contact is divided into sixteen parts; the boxes
+ * of both frames over each part are intersected, and the box is the union of these intersections.
+ * Both methods give the same contact and box.
  *
  * Only the methods certified and exact give a point. At some time, at most 1e-12 T from the time of
  * the point, both bodies contain a point that differs from it on each axis by at most 1e-12 of the
@@ -490,14 +491,14 @@ struct fmb_method {
  * fmb and sat are inexact and cannot decide flat frames, hulls, frames with a radius, or placements
  * with an end.
  *
- * Placements with an end. The first two methods decide these pairs in one way. Never wrong, it
- * leaves some pairs without a verdict (FMB_CANNOT_DECIDE): frames whose contact, or its first or
- * last time, is a single time that is not a multiple of 2^-50 of the window; frames that are both
- * flat and cross, or stay in one plane, so that doubles do not decide; frames with a radius that
- * touch, or that doubles leave open; gaps that are not enclosed within the limit; and what takes
- * more work than a limit. Frames that rest, slide, roll, hang on a hinge, land, lift off or turn
- * together have a verdict if the numbers say so exactly. Scenes and batches for verdicts alone
- * decide a few pairs more: fmb_decide() always encloses the contact too.
+ * Placements with an end. certified and exact decide these pairs in the same way. It is never
+ * wrong, but leaves some pairs without a verdict (FMB_CANNOT_DECIDE): frames whose contact is, or
+ * begins or ends with, a single time that is not a multiple of 2^-50 of the window; two flat frames
+ * that cross, or stay in one plane, if doubles do not decide them; frames with a radius that touch,
+ * or that doubles do not decide; pairs whose gap is not enclosed within its greatest width; and
+ * pairs that exceed a limit of work. Frames that rest, slide, roll, hang on a hinge, land, lift off
+ * or turn together have a verdict if their numbers describe this exactly. Scenes and batches that
+ * request only verdicts decide a few more pairs: fmb_decide() always encloses the contact too.
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
  * bounded for any numbers, as the time of certified is: among pairs whose exponents span the whole
@@ -505,11 +506,12 @@ struct fmb_method {
  * with box and gap, about 36 ms. Doubles decide most pairs with a hull or a radius by a few scans
  * of all vertices. Exact arithmetic takes some milliseconds for the largest hulls, and up to 60 ms
  * with box and gap if their exponents span that range. The same holds for moving frames with a
- * radius. A scene divides exact work into steps of less than a millisecond. Of placements with an
- * end a verdict takes microseconds in doubles, contact and gap tens and hundreds of them; what
- * needs exact arithmetic, tenths of a millisecond for boxes at rest on each other; the limit is
- * reached after some ten milliseconds for numbers of similar size, and after 0.7 s for boxes with
- * exponents that span the whole range of doubles. */
+ * radius. A scene divides exact work into steps of less than a millisecond.
+ *
+ * If a placement has an end, doubles give the verdict in microseconds, the contact in tens and the
+ * gap in hundreds of microseconds. Exact arithmetic takes tenths of a millisecond for boxes at rest
+ * on each other. The limit of work is reached after some ten milliseconds for numbers of similar
+ * size, and after 0.7 s for boxes with exponents that span the whole range of doubles. */
 
 /* Return a method from a static table, valid for the life of the program. Thread safe.
  * fmb_method_at() returns NULL if index is past the last method; fmb_method_by_name() and
@@ -528,8 +530,8 @@ const struct fmb_method *fmb_method_by_number(int number);
  * Out: *answer   the answer; all 0 if the status is not FMB_OK
  * Returns FMB_OK; a status of fmb_placement_check(); FMB_DIMENSIONS_DIFFER; FMB_BAD_DURATION
  * (negative, not finite, or 0 although a placement has an end); FMB_UNKNOWN_WANT; FMB_CANNOT_DECIDE
- * (the method cannot decide the pair, or a gap is wanted from a method that is not certain). Cost:
- * see the methods above, per pair of frames. */
+ * (the method cannot decide the pair, or a gap is wanted from a method that is not certain).
+ * Cost: see the methods above, per pair of frames. */
 enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_placement *a,
                            const struct fmb_placement *b, double duration, unsigned want,
                            struct fmb_answer *answer);
@@ -669,8 +671,8 @@ enum fmb_status fmb_scene_begin(const struct fmb_scene *scene,
                                 struct fmb_scene_state **out);
 
 /* Performs the next part of the work. Answers come in the order of the pairs. With FMB_PAIRS_ALL
- * and FMB_PAIRS_ACROSS they are of the pairs that meet, are near or have no verdict only. A step
- * may have none.
+ * and FMB_PAIRS_ACROSS, only pairs that meet, are near or have no verdict are answered. A step may
+ * have no answers.
  *
  * Out: *answers  the answers of this step
  * Returns whether the scene is complete.
@@ -684,8 +686,8 @@ bool fmb_scene_step(struct fmb_scene_state *state, struct fmb_scene_answers *ans
  * obstacles that are not tested against each other, they cost next to nothing.
  *
  * In:  state  begun by fmb_scene_begin(), complete or not; not ended
- *      moved  the position, orientation, velocity and end of the first so many elements of the
- *             same array of placements may have changed; nothing else of the query
+ *      moved  the first `moved` elements of the same array of placements may have a new position,
+ *             orientation, velocity and end; nothing else of the query may have changed
  * Returns FMB_OK; FMB_WRONG_COUNT for more than there are; FMB_BAD_DURATION or a status of
  * fmb_placement_check(). Unless it is FMB_OK, the scene is as before the call.
  * Cost: O(moved), with FMB_PAIRS_ALL and FMB_PAIRS_ACROSS O(n log n) of all n placements the first
@@ -751,22 +753,22 @@ unsigned long long fmb_scene_pair_count(const struct fmb_scene *scene);
  * "overlapping at 0 a 0 1 2:1/16 4 b 0 1:1/16 2 4:1/16" of two cubes: three weights are stated, and
  * five follow from five equations.
  *
- * Of a pair of which a placement has an end, a certificate has one of the forms
+ * If a placement has an end, a certificate has one of the forms
  *
  *     separated from LO to HI DIRECTION from LO to HI DIRECTION ...
  *     overlapping at TIME a WEIGHTS b WEIGHTS
  *
- * LO and HI are fractions of the window, rational numbers. The first LO is 0, every other one is
- * the HI before it, and the last HI is 1: the intervals [LO, HI] cover the window. A DIRECTION n is
- * one of
+ * LO and HI are rational numbers, fractions of the window. The first LO is 0, every other LO is the
+ * HI before it, and the last HI is 1: the intervals [LO, HI] cover the window. A DIRECTION n is one
+ * of
  *
  *     normal a (X Y Z)           R_A (X Y Z), a vector that turns with A
  *     normal b (X Y Z)           R_B (X Y Z)
  *     product (X Y Z) (U V W)    R_A (X Y Z) x R_B (U V W), in 3D only
  *
- * and the certificate states n . (b - a) > 0, with radii n . (b - a) > R |n|, for all points a and
- * b at all times of its interval, with n as it is at that time. OVERLAPPING is as above, with the
- * poses at TIME. There are no certificates of pairs that turn and touch.
+ * The certificate states that n . (b - a) > 0, or with radii n . (b - a) > R |n|, for all points a
+ * and b at all times of the interval, where n is the direction at the same time. The second form
+ * states the same as above, with the poses at TIME. Pairs that turn and touch have no certificate.
  *
  * "separated from 0 to 1/2 normal a (1 0 0) from 1/2 to 1 product (0 1 0) (3 0 -1)"
  */
@@ -795,10 +797,10 @@ enum { FMB_CERTIFICATE_MAX = 16384 };
  * orientation, or 1 without an orientation. Let m be the product of both n, or n itself if they are
  * equal. The pair spans f - e bits plus the number of bits of m.
  *
- * A pair of which a placement has an end is measured at the TIME of an overlap alone. Lengths are
- * multiples of 2^e / m there; f is that of a bound of all of them over the window. 1024 bits are
- * the limit. The status is FMB_OK and the text empty also if such a pair touches, or if more than
- * 256 intervals would be needed.
+ * If a placement has an end, the span is measured only for an overlap, at its TIME. There, all
+ * lengths are multiples of 2^e / m; 2^f is the least power of two above a bound of all lengths over
+ * the window. The limit is 1024 bits. The status is FMB_OK and the text is empty also if such a
+ * pair touches, or if more than 256 intervals would be needed.
  *
  * Half of all certificates are shorter than 100 bytes. Those with times in windows of
  * extreme length, and those with normals of touching pairs, are longer. The text is also empty if

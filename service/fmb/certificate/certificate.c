@@ -151,8 +151,8 @@ static void set_multiples(const struct turn_direction *direction, mpz_t m[2][3])
     }
 }
 
-/* Sets the vectors of a part of the proof: of as few bits as doubles prove. Those of corners are
- * exact if none is. */
+/* Sets the vectors of a part of the proof, rounded to as few bits as doubles can still prove. If
+ * they prove no rounded direction, a direction given by vertices is set exactly. */
 static void set_part(const struct turn_path *path, const struct turn_part *part, mpz_t m[2][3])
 {
     struct turn_direction rounded;
@@ -171,8 +171,8 @@ static void set_part(const struct turn_path *path, const struct turn_part *part,
     turn_exact_end(&exact);
 }
 
-/* Writes an interval with its direction. In the other order of the frames n is the opposite, and
- * e x f = -(f x e). */
+/* Writes an interval with its direction. If the frames are swapped, n is negated; a product is
+ * written with its factors exchanged, since e x f = -(f x e). */
 static void write_part(struct certificate_writer *writer, const struct turn_decision *turn,
                        const struct turn_part *part)
 {
@@ -225,7 +225,8 @@ static void end(struct fmb_certificate_state *state)
     state->stage = COMPLETE;
 }
 
-/* Takes the verdict of a pair that turns. One that overlaps is proven at a time, as at rest. */
+/* Takes the verdict of a pair that turns. An overlap is proven at one time, as for a pair at rest.
+ */
 static void turned(struct fmb_certificate_state *state)
 {
     struct support_pair *pair = &state->turn.path.pair;

@@ -13,8 +13,8 @@
  *   second frame at that time, so that no b equals a. Together with a point that both frames have
  *   in common at a time of the window: TOUCHING.
  *
- * A common point comes as weights of vertices: certificate_check_weights.c. A pair that turns:
- * certificate_check_turn.c; at a time it is as at rest.
+ * A common point is given by weights of vertices: certificate_check_weights.c. The separation of a
+ * pair that turns: certificate_check_turn.c; its overlap at one time is checked as at rest.
  *
  * Frames with radii, R > 0 their sum. For points a and b of the cores, let N . (b - a) >= g > 0 at
  * all times of the window; then the distance of the cores is at least g / |N|. SEPARATED: g > R
@@ -172,7 +172,7 @@ static void set_frame(struct check_side *side)
     mpq_clear(half);
 }
 
-/* Without an orientation: that of no rotation. */
+/* Sets the quaternion of an orientation; without one, (1, 0, 0, 0). */
 static void set_orientation(mpq_t out[4], const double *q, int count)
 {
     mpq_set_d(out[0], count == 0 ? 1 : q[0]);
@@ -180,7 +180,7 @@ static void set_orientation(mpq_t out[4], const double *q, int count)
         mpq_set_d(out[count == 2 ? 3 : i], q[i]);
 }
 
-/* Sets the pose at the end of the window, whose quaternion has the sign of a turn of less than 180
+/* Sets the pose at the end of the window. The sign of its quaternion gives a turn of less than 180
  * degrees. */
 static void set_late(struct check_side *side, const mpq_t duration)
 {
@@ -226,8 +226,8 @@ void check_between(mpq_t *out, mpq_t *x, mpq_t *y, const mpq_t s, int count)
     mpq_clear(product);
 }
 
-/* Sets the poses of a pair that turns at the time of the proof, which is in the window: what moves
- * by a velocity keeps that. */
+/* Sets the poses of a pair that turns at the time of the proof, which is in the window. A frame
+ * without an end keeps its pose and velocity. */
 static void set_pose(struct check_proof *proof)
 {
     mpq_t s;

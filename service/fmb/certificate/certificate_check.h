@@ -47,7 +47,7 @@ struct check_proof {
     mpq_t duration;
     mpq_t v[AXES];         /* velocity of the second frame relative to the first */
     mpq_t radius;          /* the sum of both radii */
-    mpq_t normal[2][AXES]; /* the second one of a product only */
+    mpq_t normal[2][AXES]; /* [1] is used by products only */
     mpq_t time;
     mpq_t equation[EQUATIONS][FOLLOWING_MAX + 1]; /* coefficients, and the sum */
 };
@@ -93,7 +93,7 @@ bool check_take_weights(const char **at, struct check_proof *proof);
 /* Returns what is wrong with the weights, or NULL. */
 const char *check_flaw_of_weights(struct check_proof *proof, enum fmb_verdict verdict);
 
-/* Returns what is wrong with what follows "separated" of a pair that turns, or NULL. */
+/* Returns a flaw of the text after "separated", for a pair that turns, or NULL. */
 const char *check_flaw_of_intervals(const char *at, struct check_proof *proof);
 
 #endif

@@ -1,11 +1,12 @@
-/* Checks a separation of a pair that turns, by the definitions of fmb.h.
+/* Checks the separation of a pair that turns, by the definitions of fmb.h.
  *
  * Over an interval [lo, hi] of s = t / T let x = hi - s and y = s - lo: they are at least 0, and
- * not both 0. A polynomial in s of degree d, times (hi - lo)^d, is a sum of c_k x^(d-k) y^k, below:
- * the row of its c_k. It is positive on the whole interval if all c_k are. A number is the row of
- * that number; positions and quaternions are linear, with their values at lo and hi as the row.
- * Rows are multiplied as polynomials in y are, and x + y, the row 1, 1, raises the degree of a
- * polynomial without changing its sign. All terms of a sum have the same degree.
+ * not both 0. A polynomial in s of degree d, times (hi - lo)^d, is a sum of c_k x^(d-k) y^k. The
+ * code stores its c_k as a row. The polynomial is positive on the whole interval if all c_k are
+ * positive. The row of a number is the number itself; positions and quaternions are linear, and
+ * their rows are their values at lo and hi. Rows are multiplied like polynomials in y. The factor
+ * x + y, with the row 1, 1, raises the degree of a polynomial without changing its sign. All terms
+ * of a sum have the same degree.
  *
  * Let N_A = |q_A|^2 R(q_A) and N_B be the matrices of the rotations, which have no denominator, and
  * n = N_A u, N_B u, or N_A u x N_B v: a polynomial of degree d = 2 or 4. For vertices a and b of
@@ -14,15 +15,15 @@
  *     |q_A|^2 |q_B|^2 n . ((p_B + R_B b) - (p_A + R_A a))
  *         = |q_A|^2 |q_B|^2 n . (p_B - p_A) + |q_A|^2 (N_B^T n) . b - |q_B|^2 (N_A^T n) . a
  *
- * is a polynomial of degree d + 5 that is positive where n separates the two vertices; and N^T is
- * the matrix of the conjugate quaternion. Coefficient by coefficient, it is least at some a and at
- * some b. If these least ones are positive, so is the polynomial of every pair of vertices, and n .
- * (b - a) > 0 for all points of the frames, which are convex, on the whole interval.
+ * is a polynomial of degree d + 5 that is positive where n separates the two vertices. N^T is the
+ * matrix of the conjugate quaternion. Each coefficient is least for some a and some b. If all these
+ * least coefficients are positive, so is the polynomial of every pair of vertices. Then n . (b - a)
+ * is positive for all points of the frames, which are convex, on the whole interval.
  *
- * Radii. Let f_k be these least coefficients, all positive, and f the polynomial that they make. It
- * is at most that of every pair of vertices; the distance of the cores is at least f / (|q_A|^2
- * |q_B|^2 |n|). It is more than R, the sum of the radii, where f^2 - R^2 (n . n) |q_A|^4 |q_B|^4 is
- * positive, of degree 2 d + 10. */
+ * Radii. Let f_k be these least coefficients, all positive, and f the polynomial with these
+ * coefficients. f is at most the polynomial of every pair of vertices, so the distance of the cores
+ * is at least f / (|q_A|^2 |q_B|^2 |n|). This exceeds R, the sum of the radii, where the polynomial
+ * f^2 - R^2 (n . n) |q_A|^4 |q_B|^4, of degree 2 d + 10, is positive. */
 #include "certificate_check.h"
 
 #include <stdlib.h>
@@ -103,7 +104,7 @@ static void turn(struct rows *rows, row q[4], bool back, row v[AXES], row out[AX
     }
 }
 
-/* Sets poses over an interval. */
+/* Sets the rows of both poses over an interval. */
 static void set_poses(struct check_proof *proof, mpq_t end[2], struct rows *rows)
 {
     mpq_t q[4], position[AXES];
@@ -130,7 +131,7 @@ static void set_poses(struct check_proof *proof, mpq_t end[2], struct rows *rows
     check_each(q, sizeof q, mpq_clear);
 }
 
-/* Sets n: of frame `of`, or of = 2 the product. */
+/* Sets n: fixed in frame `of`, or the product if of = 2. */
 static void set_direction(struct check_proof *proof, int of, struct rows *rows)
 {
     for (int i = 0; i < 2 * AXES; i++)
@@ -144,8 +145,8 @@ static void set_direction(struct check_proof *proof, int of, struct rows *rows)
     add_cross(rows, rows->n, rows->of[0], rows->of[1]);
 }
 
-/* Adds the least value of coefficient k over the vertices of frame b, or minus the greatest over
- * those of a. */
+/* Adds the least value of coefficient k over the vertices of frame b, or subtracts the greatest
+ * over the vertices of frame a. */
 static void add_least(struct check_proof *proof, int f, int k, struct rows *rows)
 {
     struct check_side *side = &proof->side[f];
@@ -175,7 +176,7 @@ static bool are_positive(row value, int degree)
     return positive;
 }
 
-/* Whether f exceeds R |q_A|^2 |q_B|^2 |n|. It is overwritten. */
+/* Returns whether f exceeds R |q_A|^2 |q_B|^2 |n|. */
 static bool exceeds_radius(struct check_proof *proof, int degree, struct rows *rows)
 {
     row *square = &rows->scratch[0], *length = &rows->scratch[1];
@@ -193,7 +194,7 @@ static bool exceeds_radius(struct check_proof *proof, int degree, struct rows *r
     return are_positive(*square, 2 * degree);
 }
 
-/* Whether the direction separates the frames over an interval. */
+/* Returns whether the direction separates the frames over an interval. */
 static bool separates(struct check_proof *proof, mpq_t end[2], int of)
 {
     struct rows rows;
@@ -241,13 +242,13 @@ const char *check_flaw_of_intervals(const char *at, struct check_proof *proof)
                           check_take(&at, " to ") && check_take_number(&at, end[1]);
         const int of = good ? take_direction(&at, proof) : -1;
         if (of < 0)
-            flaw = "there is no interval with a direction of this pair where it is due";
+            flaw = "an interval with a direction of this pair is missing";
         else if (!mpq_equal(end[0], covered))
-            flaw = "an interval does not begin where the one before it ends";
+            flaw = "an interval does not begin where the previous interval ends";
         else if (mpq_cmp(end[0], end[1]) >= 0 || mpq_cmp_ui(end[1], 1, 1) > 0)
             flaw = "an interval ends before it begins, or after the window";
         else if (!separates(proof, end, of))
-            flaw = "a direction does not hold the frames apart over its interval";
+            flaw = "a direction does not separate the frames over its interval";
         mpq_set(covered, end[1]);
     } while (!flaw && *at != '\0');
     if (!flaw && mpq_cmp_ui(covered, 1, 1) != 0)

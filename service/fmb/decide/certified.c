@@ -394,7 +394,7 @@ static void end_turning(struct certified *certified)
     certified->turning = NULL;
 }
 
-/* Begins the decision of a pair of which a placement has an end. */
+/* Begins the decision of a pair in which a placement has an end. */
 static bool begin_with_end(const struct frame_pair *pair, unsigned want, double farthest,
                            enum support_effort effort, struct certified *out,
                            struct fmb_answer *answer)

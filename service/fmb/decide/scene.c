@@ -51,8 +51,8 @@ struct scene_outcomes {
     double box[BLOCK][2][FMB_DIM_MAX];
     double point[BLOCK][1 + FMB_DIM_MAX];
     unsigned point_frames[BLOCK][2]; /* in answers of bodies: the frames that have the point */
-    /* In answers of bodies: a pair of frames has no verdict. Not bool: copied where it is not set.
-     */
+    /* In answers of bodies: a pair of frames has no verdict. Not bool, since it is copied where it
+     * is not set. */
     unsigned char undecided[BLOCK];
     struct fmb_gap gap[BLOCK];
 };
@@ -456,8 +456,8 @@ static void copy_answer(struct scene_outcomes *answers, size_t to, const struct 
     answers->gap[to] = of->gap[from];
 }
 
-/* Returns whether an overlap of two frames is the answer of their bodies. An inexact method may
- * still refuse a pair of frames. */
+/* Returns whether an overlap of two frames decides their bodies. With an inexact method it does
+ * not: the method may still refuse another pair of frames. */
 static bool is_verdict_alone(const struct fmb_scene_state *state)
 {
     return !state->scene.want && !has_gaps(&state->scene) && state->scene.method->certain;
@@ -680,7 +680,7 @@ static void include(struct fmb_scene_state *state, size_t k)
     }
 }
 
-/* Clears the answer of bodies with a pair of frames that has no verdict and might change it. */
+/* Clears the answer of two bodies if a pair of their frames has no verdict and might change it. */
 static void end_undecided(struct fmb_scene_state *state, size_t n)
 {
     struct scene_outcomes *answers = &state->block.answers;

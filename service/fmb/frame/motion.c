@@ -5,10 +5,11 @@
 
 /* ---- Exact signs ---- */
 
-/* Returns the sign of the sum of up to 16 products x[i] y[i], exactly. In: no product overflows or
- * is, other than 0, below 2^-900. The products and their errors are added to an expansion
- * (Shewchuk, Adaptive precision floating-point arithmetic, 1997, theorem 10): components that do
- * not overlap, in ascending order. The last one that is not 0 has the sign of the sum. */
+/* Returns the sign of the sum of up to 16 products x[i] y[i], exactly. In: no product overflows;
+ * each is 0 or at least 2^-900 in magnitude. The products and their errors are added to an
+ * expansion (Shewchuk, Adaptive precision floating-point arithmetic, 1997, theorem 10): components
+ * that do not overlap, in ascending order. The last component that is not 0 has the sign of the
+ * sum. */
 static int sign_of_products(const double *x, const double *y, int count)
 {
     double part[32];
@@ -38,7 +39,7 @@ static int sign_of_products(const double *x, const double *y, int count)
     return parts == 0 ? 0 : part[parts - 1] > 0 ? 1 : -1;
 }
 
-/* Sets the orientations scaled, each by a power of two of its own, with their largest components in
+/* Sets both orientations, each scaled by its own power of two so that its largest component is in
  * [1, 2). Returns the exponent of the second scale relative to the first. */
 static int set_scaled(const struct fmb_placement *placement, double q[2][4])
 {
@@ -74,8 +75,8 @@ static bool is_finite(const double *x, int count)
     return none == 0;
 }
 
-/* The length of an orientation is within [1, 4) of its scale: beyond 2^4 no two are within a factor
- * of 4. */
+/* The length of an orientation is within [1, 4) of its scale. If the scales differ by more than
+ * 2^4, the lengths differ by more than a factor of 4. */
 enum fmb_status motion_check(const struct fmb_placement *placement)
 {
     const int dim = placement->body->dim, count = placement->orientation_count;
@@ -116,7 +117,7 @@ void motion_quaternions(const struct fmb_placement *placement, double q0[4], dou
 
 /* ---- Poses ---- */
 
-/* Between x and y at a fraction s of the way from x. */
+/* Returns the number at a fraction s of the way from x to y. */
 static double between(double x, double y, double s)
 {
     return x == y ? x : (1 - s) * x + s * y;
@@ -165,17 +166,18 @@ void fmb_pose_at(const struct fmb_placement *placement, double duration, double 
 /* ---- Boxes ----
  *
  * R(q(s)) x is a rational Bezier curve with the control points N(q0, q0) x / q0 . q0,
- * N(q0, q1) x / q0 . q1 and N(q1, q1) x / q1 . q1, whose weights are the divisors, all positive: it
- * lies in their convex hull. p(s) lies between p0 and p1. So on each axis a body is within the
- * least and the greatest coordinate of p0 and p1 plus those of three linear images of its box.
+ * N(q0, q1) x / q0 . q1 and N(q1, q1) x / q1 . q1. The weights are the divisors, all positive, so
+ * the curve lies in the convex hull of these points. p(s) lies between p0 and p1. So on each axis
+ * the least coordinate of a body is at least the lesser of p0 and p1 plus the least coordinate of
+ * three linear images of its box; the greatest coordinate is bounded likewise.
  *
  * Accuracy, with u = 2^-53, L = |q| |r|, w the divisor and S = sum_j (|m_j| + h_j) for the centre m
- * and the half extents h of the box. An entry of N(q, r) is off by 4.01 u L (motion.h), as w is;
- * the quotient of the two by 9.1 u (L / w)^2, and its product with m or h, all three summed, by
+ * and the half extents h of the box. An entry of N(q, r) is off by 4.01 u L (motion.h), and so is
+ * w; their quotient is off by 9.1 u (L / w)^2, and the sum of its three products with m or h by
  * 12.2 u (L / w)^2 S; the sum of both by 1.1 u (L / w) S more. 24 u (L / w)^2 S covers this, and
  * the rounding of the bound, if L / w < 2^20. Quaternions that are off by 3 u of their lengths move
- * the quotients by 12 u (L / w)^2 more. Otherwise, and wherever it is tighter, the box is that of a
- * ball of the reach about each position. */
+ * the quotients by 12 u (L / w)^2 more. Otherwise, and wherever it is tighter, the box of a
+ * ball with the radius reach about each position is taken. */
 #define MOTION_BOX_ERROR (40 * 0x1p-53)
 
 void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_MAX], int dim,

@@ -2,9 +2,9 @@
  *
  *     p(s) = (1 - s) p0 + s p1,    q(s) = (1 - s) q0 + s c q1,    c the sign of q0 . q1.
  *
- * N(q) = |q|^2 R(q) is a quadratic form in q. Its polar form N(q, r), which is bilinear and
- * symmetric, with N(q, q) = N(q), gives the Bernstein coefficients of N(q(s)) on an interval:
- * N(q, q), N(q, r), N(r, r) for its ends q and r. Those of |q(s)|^2 are q . q, q . r and r . r, all
+ * N(q) = |q|^2 R(q) is a quadratic form in q. Its polar form N(q, r) is bilinear and symmetric, and
+ * N(q, q) = N(q). On an interval with the quaternions q and r at its ends, N(q(s)) has the
+ * Bernstein coefficients N(q, q), N(q, r) and N(r, r), and |q(s)|^2 has q . q, q . r and r . r, all
  * positive. No shared state. */
 #ifndef FMB_MOTION_H
 #define FMB_MOTION_H
@@ -19,24 +19,25 @@ static inline bool motion_turns(const struct fmb_placement *placement, double du
     return placement->end_count != 0 && duration > 0;
 }
 
-/* The status of fmb_placement_check() of a placement whose end_count is not 0. In: its body has a
- * frame. */
+/* Returns the status of fmb_placement_check() for a placement whose end_count is not 0. In: its
+ * body has a frame. */
 enum fmb_status motion_check(const struct fmb_placement *placement);
 
-/* Sets both orientations of a placement that was checked; without an end they are equal: those
- * given times one power of two, the second times c. q0 has its largest component in [1, 2). Nothing
- * is rounded. Without an orientation both are (1, 0, 0, 0). */
+/* Sets both orientations of a checked placement: the given quaternions times one power of two, the
+ * second also times c. The largest component of q0 is in [1, 2). Nothing is rounded. Without an end
+ * both are equal. Without an orientation both are (1, 0, 0, 0). */
 void motion_quaternions(const struct fmb_placement *placement, double q0[4], double q1[4]);
 
 /* Sets the ends of a box that contains a frame or a body while its orientation is between q[0] and
- * q[1], each off by at most 3 u of its length, and its position between two.
+ * q[1] and its position between position[0] and position[1]. q[0] and q[1] may each be off by at
+ * most 3 u of their length.
  *
  * In: box, reach  as of motion_box() */
 void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_MAX], int dim,
                         const double box[2][FMB_DIM_MAX], double reach, double low[FMB_DIM_MAX],
                         double high[FMB_DIM_MAX]);
 
-/* Returns the box of a body, or of a frame of it, over the window, of a placement with an end.
+/* Returns the box over the window of a body, or of one of its frames, whose placement has an end.
  *
  * In:  box    [lower, upper][axis] of the body or the frame, in body coordinates
  *      reach  bounds the distance of its points from the origin of the body */

@@ -37,15 +37,15 @@ static inline unsigned frame_vertex_count(const struct fmb_frame *frame)
     return frame_is_simplex(frame) ? (unsigned) frame->count + 1 : 1U << frame->count;
 }
 
-/* Returns whether vertex k of such a frame, which is its origin plus some components, has component
- * i. */
+/* Vertex k of such a frame is its origin plus some components. Returns whether component i is among
+ * these. */
 static inline bool frame_vertex_has(const struct fmb_frame *frame, unsigned k, int i)
 {
     return frame_is_simplex(frame) ? k == (unsigned) i + 1 : k >> i & 1;
 }
 
-/* Returns whether a frame is decided by its vertices (support_pair.h), and its slabs, which are
- * those of a cuboid that contains it, only reject. */
+/* Returns whether a frame is decided by its vertices (support_pair.h). Its slabs belong to a cuboid
+ * that contains it, and only reject pairs. */
 static inline bool frame_by_vertices(const struct fmb_frame *frame)
 {
     return frame->shape == FMB_HULL || frame->radius != 0;

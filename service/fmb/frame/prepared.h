@@ -59,9 +59,9 @@ enum {
      * frame, by half of a component to either side. */
     PREPARED_CENTRED = 1 << 14,
     /* Decided by its vertices (support_pair.h): a hull, whose numbers describe a cuboid that
-     * contains it, or a frame with a radius, whose numbers describe its core. Set too, with
-     * PREPARED_MOVING and without PREPARED_USABLE, of every frame whose placement has an end: its
-     * numbers describe it at the beginning of the window. */
+     * contains it, or a frame with a radius, whose numbers describe its core. Also set, with
+     * PREPARED_MOVING and without PREPARED_USABLE, for every frame whose placement has an end; its
+     * numbers then describe the frame at the beginning of the window. */
     PREPARED_VERTICES = 1 << 15
 };
 

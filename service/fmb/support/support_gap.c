@@ -276,7 +276,7 @@ static double spread_of(const struct support_gap *gap, const struct support_simp
 static const double time_limit = 0.9e-12;
 
 /* Returns the error of the point relative to the limits of fmb.h, for a simplex whose facets are at
- * least depth from the origin. share: 1 if the point is that of b, 0 if it is that of a. */
+ * least depth from the origin. share: 1 if the point is taken from b, 0 if it is taken from a. */
 static double relative_error(const struct support_gap *gap, const struct support_nearest *nearest,
                              double depth, double *share)
 {

@@ -278,8 +278,8 @@ bool support_box(const struct support_pair *pair, const struct support_simplex *
 
 enum { WIDENINGS_MAX = 8 };
 
-/* The coordinate of a point that belongs to vertex i of the basis is linear in the point. Its
- * gradient is orthogonal to the facet without that vertex, and points inward. */
+/* Sets the gradient of barycentric coordinate i of a point in the simplex of the basis. It is
+ * orthogonal to the facet opposite vertex i and points inward. */
 static void set_gradient(const struct program *program, int i, double out[FMB_DIM_MAX])
 {
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
@@ -289,8 +289,8 @@ static void set_gradient(const struct program *program, int i, double out[FMB_DI
     }
 }
 
-/* The vertex of D that is farthest beyond the facet nearest to the origin enters the simplex, until
- * no facet is near. */
+/* In each step, the vertex of D that is farthest beyond the facet nearest to the origin enters the
+ * simplex. */
 void support_widen(const struct support_pair *pair, double depth, struct support_nearest *nearest)
 {
     const int dim = pair->dim;

@@ -166,7 +166,8 @@ void support_integers_path(const struct fmb_placement *placement, double duratio
             integer_set_product(out[axis], dyadic_of(placement->velocity[axis]), window, unit);
 }
 
-/* Sets a frame at a fraction of the window, whose unit all lengths of the pair are multiples of. */
+/* Sets a frame in its pose at a fraction of the window. All lengths of the pair there are multiples
+ * of 2^integers->unit. */
 static void set_posed(const struct frame_pair *frames, double at,
                       const struct support_integers *integers, struct support_side *side)
 {

@@ -36,9 +36,9 @@ struct support_integers {
 /* Calls one of mpz_init and mpz_clear for every number. */
 void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr));
 
-/* Sets the integers of a checked pair, whose frames must outlive them. posed: of the pose at a
- * fraction of the window, without displacement; else of the pose at its beginning, whose ends are
- * not read. In: all numbers are 0. */
+/* Sets the integers of a checked pair, whose frames must outlive them. posed: in the pose at a
+ * fraction `at` of the window, without displacement; otherwise in the pose at its beginning, and
+ * the ends of the placements are not read. In: all numbers are 0. */
 void support_integers_set(const struct frame_pair *frames, bool posed, double at,
                           struct support_integers *out);
 
@@ -46,10 +46,10 @@ void support_integers_set(const struct frame_pair *frames, bool posed, double at
 void support_integers_polar(mpz_t x[4], mpz_t y[4], unsigned factor, mpz_t out[3][3], mpz_t norm,
                             mpz_t scratch);
 
-/* Returns a power of two that divides all lengths of a pair that turns. */
+/* Returns the exponent of a power of two that divides all lengths of a pair that turns. */
 long support_integers_unit(const struct frame_pair *frames);
 
-/* out := the displacement of a placement over the window, over 2^unit: to its end, or v T. */
+/* out := the displacement of a placement over the window, to its end or v T, divided by 2^unit. */
 void support_integers_path(const struct fmb_placement *placement, double duration, long unit,
                            mpz_t out[3]);
 

@@ -71,10 +71,10 @@ struct support_pair {
     double offset[FMB_DIM_MAX]; /* position of b - position of a, rounded; beyond dim: 0 */
     double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, rounded */
     double reach, error;        /* as above */
-    /* The pose of a pair that turns: that at the fraction at of the window, a multiple of 2^-53. */
+    /* A pair that turns is posed at a fraction `at` of the window, a multiple of 2^-53. */
     bool posed;
     double at;
-    double position[2][FMB_DIM_MAX]; /* of both bodies there, rounded three times; else not set */
+    double position[2][FMB_DIM_MAX]; /* of both bodies if posed, rounded three times */
     bool rounded;                    /* a frame has a radius */
     double radius[2];                /* lower and upper bound of the sum of both radii */
 };
@@ -82,7 +82,8 @@ struct support_pair {
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */
 void support_pair_set(const struct frame_pair *frames, struct support_pair *out);
 
-/* Gives a pair that support_pair_set() has set the pose of another pair of the same frames. */
+/* Copies the pose of a pair to another pair of the same frames, which support_pair_set() has set.
+ */
 void support_pair_pose(const struct support_pair *posed, struct support_pair *out);
 
 /* A point of D by number: vertex of A, vertex of B, and the end of the window, 0 or 1. The end is 0

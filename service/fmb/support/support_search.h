@@ -79,8 +79,9 @@ bool support_simplex_contains_origin(const struct support_pair *pair,
 double support_simplex_depth(const struct support_pair *pair,
                              const struct support_simplex *simplex);
 
-/* Exchanges vertices of a simplex that contains the origin until the origin is this deep in it, and
- * sets the weights; stops after some steps, with the deepest simplex found. Nothing is proven. */
+/* Exchanges vertices of a simplex that contains the origin until all facets are at least depth from
+ * the origin, or for a limited number of steps. Sets the deepest of these simplices and its
+ * weights. Nothing is proven. */
 void support_widen(const struct support_pair *pair, double depth, struct support_nearest *nearest);
 
 /* Sets the contact, or the box, of a pair that a simplex proves to overlap. Returns false if

@@ -6,19 +6,19 @@
 #include <math.h>
 #include <string.h>
 
-/* Intervals this short are left to integers, which divide them until they are of the least length.
- * Relative to the window, an end of a contact is at most this far out. */
+/* Short intervals are left to integers, which divide them down to the least length. Relative to the
+ * window, an end of a contact is at most short_interval too far out. */
 static const double short_interval = 0x1p-41, least_interval = 0x1p-50;
 
 enum {
     /* The work of a decision, in searches in doubles, before it is given up without a verdict. */
     LOOKS_MAX = 4000,
-    LOOKS_EXACT = 8,       /* for which an exact verdict counts, */
-    LOOKS_DIRECTION = 2,   /* an exact direction, */
-    VERTICES_OF_LOOK = 64, /* and so many vertices in either */
+    LOOKS_EXACT = 8,       /* the cost of an exact verdict */
+    LOOKS_DIRECTION = 2,   /* the cost of an exact direction */
+    VERTICES_OF_LOOK = 64, /* so many vertices cost one more in either */
     LOOKS_BOUNDED = 200,
     LOOKS_STEP = 64,
-    DIRECTIONS_MAX = 20 /* towards an end of the contact */
+    DIRECTIONS_MAX = 20 /* tried towards an end of the contact */
 };
 
 void turn_none(struct turn_decision *out)
@@ -67,7 +67,7 @@ static void begin_programs(struct turn_decision *decision, double s, bool neares
                              : programs_begin(pair, 0, first, count);
 }
 
-/* Looks in doubles. Returns the verdict, or 0. */
+/* Searches in doubles at s. Returns the verdict, or 0. */
 static enum fmb_verdict look(struct turn_decision *decision, double s)
 {
     enum fmb_verdict verdict = 0;
@@ -112,7 +112,7 @@ static void add_corners(struct turn_decision *decision, int of, unsigned v0, uns
     }
 }
 
-/* Vertices of a frame among which its faces and edges are sought. */
+/* Vertices of a frame from which candidate faces and edges are formed. */
 struct turn_features {
     uint16_t vertex[FMB_HULL_VERTICES_MAX];
     unsigned count;
@@ -122,8 +122,8 @@ struct turn_features {
 
 enum { NEAR_VERTICES = 6 };
 
-/* Sets the vertices of a frame of few vertices, or those of a hull near the nearest point. Edges
- * are all pairs of them; of a cuboid its components. */
+/* Sets all vertices of a frame that has few, or the vertices of a hull near the nearest point. The
+ * edges are all pairs of these vertices; the edges of a cuboid are its components. */
 static void set_features(const struct turn_decision *decision, int f, struct turn_features *out)
 {
     const struct support_view *view = &decision->path.pair.view[f];
@@ -147,7 +147,7 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
         const double *last = decision->nearest.direction;
         turn_body_direction(view, vec3_dot(last, last) > 0 ? last : decision->toward, n);
         out->count = turn_farthest(view, n, f ? -1 : 1, 0, out->vertex);
-        /* Far apart in the list: neighbours may be nearly on one line. */
+        /* Takes vertices far apart in the list: neighbours may be nearly collinear. */
         for (unsigned i = 0; out->count > NEAR_VERTICES && i < NEAR_VERTICES; i++)
             out->vertex[i] = out->vertex[i * out->count / NEAR_VERTICES];
         out->count = out->count < NEAR_VERTICES ? out->count : NEAR_VERTICES;
@@ -159,7 +159,7 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
         }
 }
 
-/* Drops the directions that doubles know not to separate the frames over an interval. */
+/* Drops the directions that, in doubles, clearly do not separate the frames over an interval. */
 static void filter_corners(struct turn_decision *decision, struct turn_interval interval)
 {
     const struct support_view *view = decision->path.pair.view;
@@ -178,8 +178,8 @@ static void filter_corners(struct turn_decision *decision, struct turn_interval 
     decision->corner_count = kept;
 }
 
-/* Lists the directions to be tried over an interval. Those of cores do not decide frames with a
- * radius. */
+/* Lists the directions to be tried over an interval. Frames with a radius have none: directions of
+ * their cores do not decide them. */
 static void begin_corners(struct turn_decision *decision, struct turn_interval interval)
 {
     struct turn_features of[2];
@@ -217,8 +217,8 @@ static void begin_corners(struct turn_decision *decision, struct turn_interval i
 
 /* ---- Intervals ---- */
 
-/* Returns the middle, rounded down to a multiple of 2^-52, so that 1 - s is exact (an interval next
- * to a known contact is no power of two long). */
+/* Returns the middle, rounded down to a multiple of 2^-52 so that 1 - s is exact (the length of an
+ * interval next to a known contact need not be a power of two). */
 static double middle_of(struct turn_interval interval)
 {
     return floor(0.5 * (interval.lo + interval.hi) * 0x1p52) * 0x1p-52;
@@ -232,8 +232,8 @@ static void push(struct turn_decision *decision, double lo, double hi)
 
 static double approach_contact(struct turn_decision *decision, double apart);
 
-/* Replaces all intervals by the one on the side that is sought of the known contact. limit: all
- * times before it (TURN_LAST: after it) are known to have none. approach: in doubles first. */
+/* Replaces all intervals by the interval between limit and the known contact. limit: no time before
+ * it (TURN_LAST: after it) has a contact. approach: shortens the interval in doubles first. */
 static void seek_end(struct turn_decision *decision, double limit, bool approach)
 {
     const int late = decision->phase == TURN_LAST;
@@ -249,7 +249,7 @@ static void seek_end(struct turn_decision *decision, double limit, bool approach
         push(decision, limit, decision->in[0]);
 }
 
-/* Takes a contact at s into account. interval: the one in progress, which contains s. Returns
+/* Takes a contact at s into account. interval: the interval in progress, which contains s. Returns
  * whether the intervals have changed. */
 static bool add_contact(struct turn_decision *decision, double s, enum fmb_verdict verdict,
                         struct turn_interval interval)
@@ -283,7 +283,7 @@ static void pop(struct turn_decision *decision)
     decision->stage = TURN_LOOK;
 }
 
-/* Divides the interval in progress; the half that is next in order comes last. */
+/* Divides the interval in progress. The half that is next in order is pushed last. */
 static void divide(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval);
@@ -301,8 +301,8 @@ static void give_up(struct turn_decision *decision)
     pop(decision);
 }
 
-/* The frames are apart over the interval in progress. direction: what proved it, or NULL: the
- * corners last tried. */
+/* Removes the interval in progress, over which the frames are apart, and adds it to the proof if
+ * one is wanted. direction: the direction that proves it, or NULL for the corners tried last. */
 static void prove(struct turn_decision *decision, struct turn_interval interval,
                   const struct turn_direction *direction)
 {
@@ -323,7 +323,7 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
         part->direction.m[0][axis] *= part->sign;
 }
 
-/* Looks at the middle of an interval. */
+/* Examines the middle of an interval. */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval), width = interval.hi - interval.lo;
@@ -347,7 +347,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
             return;
         }
     }
-    /* Short, and next to the contact that is known: its end is enclosed. */
+    /* A short interval next to the known contact encloses its end. */
     if (width <= short_interval && decision->phase == TURN_FIRST && interval.hi == decision->in[0])
         decision->out[0] = fmin(decision->out[0], interval.lo), pop(decision);
     else if (width <= short_interval && decision->phase == TURN_LAST &&
@@ -382,7 +382,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
         divide(decision, interval);
 }
 
-/* The frames do not overlap in the interval. Looks at its ends. */
+/* Examines the ends of an interval in which the frames do not overlap. */
 static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval);
@@ -415,8 +415,8 @@ static void look_at_ends(struct turn_decision *decision, struct turn_interval in
 
 /* ---- Ends of the contact ---- */
 
-/* Returns a time near that at which a direction ceases to separate the frames: they are apart along
- * it at `from`, and not at `to`. The method of false position, with the Illinois variant. */
+/* Returns a time near the time at which a direction ceases to separate the frames. Along it, they
+ * are apart at `from` and not at `to`. The method of false position, in the Illinois variant. */
 static double root_of(struct turn_path *path, const struct turn_direction *direction, double from,
                       double to)
 {
@@ -440,10 +440,10 @@ static double root_of(struct turn_path *path, const struct turn_direction *direc
     return z;
 }
 
-/* Encloses the end of the contact that the phase is about in doubles, as far as it can: moves in[],
+/* Encloses the end of the contact that the phase determines as tightly as doubles can: moves in[],
  * and returns the time up to which the frames are apart. apart: such a time. Along the direction of
- * the last look the frames are apart until a root of its polynomial: little before that, this is
- * proven; little after it, they meet, or another direction separates them. */
+ * the last search, the frames are apart until a root of its polynomial. Shortly before the root,
+ * this is proven; shortly after it, they meet or another direction separates them. */
 static double approach_contact(struct turn_decision *decision, double apart)
 {
     const int late = decision->phase == TURN_LAST;
@@ -539,8 +539,8 @@ static void set_box(const struct turn_path *path, double first, double last,
     }
 }
 
-/* Sets the gap of a pair that touches at s: 0, with the direction that proves the most of those of
- * the last looks and those by vertices. */
+/* Sets the gap of a pair that touches at s: 0, with the direction of the greatest lower bound among
+ * the directions of the last searches and the directions by vertices. */
 static void set_touching_gap(struct turn_decision *decision, double s, struct fmb_gap *out)
 {
     struct turn_path *path = &decision->path;
@@ -573,7 +573,7 @@ static void set_touching_gap(struct turn_decision *decision, double s, struct fm
     }
 }
 
-/* Sets what follows from the intervals. Returns whether there is a verdict. */
+/* Sets the answer that follows from the intervals. Returns whether there is a verdict. */
 static bool set_answer(struct turn_decision *decision, struct fmb_answer *answer)
 {
     const double duration = decision->frames.duration;
@@ -597,7 +597,7 @@ static bool set_answer(struct turn_decision *decision, struct fmb_answer *answer
     return true;
 }
 
-/* Begins the next phase, after the intervals of one are done. */
+/* Begins the next phase when the intervals of the current phase are done. */
 static void next_phase(struct turn_decision *decision, struct fmb_answer *answer)
 {
     if (decision->phase == TURN_FIRST) {

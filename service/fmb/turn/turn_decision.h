@@ -1,24 +1,24 @@
-/* Pairs of frames of which a placement has an end: verdict, contact, box and point.
+/* Pairs of frames in which a placement has an end: verdict, contact, box and point.
  *
- * The window is divided into intervals of s = t / T whose ends are multiples of 2^-50. In order of
- * time, and each in the middle first:
+ * The window is divided into intervals of s = t / T whose ends are multiples of 2^-50. They are
+ * examined in order of time, each at its middle first:
  *
  *   doubles   a search at the middle (turn_look()) proves an overlap, or gives a direction. The
  *             direction may prove that the frames are apart over the interval (turn_distance());
- *             otherwise it is divided.
- *   integers  if the search is unsure, or an interval is shorter than 2^-41: the exact verdict at
- *             the middle, by the programs, and directions given by vertices over the interval, by
- *             their exact polynomials (turn_exact.h): of frames of few vertices all normals of
- *             faces and all products of edges, of hulls those near the nearest point.
+ *             otherwise the interval is divided.
+ *   integers  if the search is unsure, or an interval is shorter than 2^-41: the programs give the
+ *             exact verdict at the middle; over the interval, the exact polynomials (turn_exact.h)
+ *             of directions given by vertices are tried: for frames with few vertices all normals
+ *             of faces and all products of edges, for hulls those near the nearest point.
  *
- * The verdict is OVERLAPPING if the frames overlap at a time that was looked at; otherwise the
- * intervals cover the window, and the frames do not overlap in any of them: they touch if they do
- * at a time that was looked at. What integers do not decide at the shortest intervals has no
- * verdict: frames that touch at a single time that is not an end of an interval, frames that cross
- * at such a time and are not transversal, and frames with a radius that doubles leave open.
+ * The verdict is OVERLAPPING if the frames overlap at an examined time. Otherwise the intervals
+ * cover the window, and the frames do not overlap in any of them; the verdict is TOUCHING if they
+ * touch at an examined time. A pair has no verdict if integers do not decide a shortest interval:
+ * frames that touch at a single time that is not an end of an interval, frames that cross at such a
+ * time and are not transversal, and frames with a radius that doubles do not decide.
  *
- * The contact is enclosed from both sides: on each, the frames are apart up to a time at most 2^-41
- * from one at which they meet.
+ * The contact is enclosed from both sides: on each side, the frames are apart up to a time that is
+ * at most 2^-41 from a time at which they meet.
  *
  * Box: the union, over pieces of the contact, of the intersections of the boxes of both frames.
  * Gap: turn_gap.h.
@@ -39,19 +39,19 @@ struct turn_interval {
     double lo, hi;
 };
 
-/* What proves that the frames are apart over the window: intervals that cover it, in order, and a
- * direction of each. */
+/* A proof that the frames are apart over the window: intervals that cover it, in order, and a
+ * direction for each. */
 enum { TURN_PROOF = 256 };
 
 struct turn_part {
     struct turn_interval interval;
     struct turn_direction direction;
-    int sign; /* not 0: the exact direction is that of corners, or its opposite */
+    int sign; /* not 0: the exact direction is the direction of corners, or its opposite */
     struct turn_corners corners;
 };
 
 struct turn_proof {
-    unsigned count; /* above TURN_PROOF: more than there is room for */
+    unsigned count; /* above TURN_PROOF: the proof exceeds the capacity */
     struct turn_part part[TURN_PROOF];
 };
 
@@ -63,18 +63,18 @@ struct turn_decision {
     enum { TURN_VERDICT, TURN_FIRST, TURN_LAST, TURN_GAP, TURN_POINT, TURN_COMPLETE } phase;
     enum { TURN_LOOK, TURN_CORNER, TURN_ENDS } stage;
     struct turn_path path;
-    struct support_nearest nearest; /* of the last look */
+    struct support_nearest nearest; /* of the last search in doubles */
     double looked, toward[FMB_DIM_MAX];
-    bool sure; /* the last look gave a verdict */
+    bool sure; /* the last search in doubles gave a verdict */
     unsigned looks;
-    struct turn_interval stack[TURN_STACK]; /* the next one last */
+    struct turn_interval stack[TURN_STACK]; /* the next interval is the last element */
     int count;
-    double in[2], out[2]; /* known times of contact, and what encloses all */
+    double in[2], out[2]; /* first and last: known times of contact, and bounds of all of them */
     double overlap;       /* a time of overlap */
     struct {
         double at;
         enum fmb_verdict verdict;
-    } known[TURN_KNOWN]; /* verdicts at times looked at */
+    } known[TURN_KNOWN]; /* verdicts at examined times */
     unsigned next_known;
     struct turn_exact exact;
     bool has_exact;
@@ -84,7 +84,7 @@ struct turn_decision {
     struct turn_gap gap;
     double farthest;
     unsigned corner, corner_count;
-    enum turn_outcome outcome; /* the strongest of the corners tried */
+    enum turn_outcome outcome; /* the strongest outcome of the corners tried */
     struct turn_proof *proof;  /* to be completed, or NULL */
 };
 
@@ -92,11 +92,12 @@ struct turn_decision {
 void turn_none(struct turn_decision *out);
 
 /* Begins the decision of a checked pair. farthest: a gap that is surely greater has bounds of NAN.
- * bounded: only what takes tens of microseconds, without allocation. proof: NULL, or wanted, of a
- * decision that is not bounded: if the frames are separated, it is complete in the end; if they
- * overlap, out->overlap is a time of overlap. Returns whether it is complete, with *answer set:
- * without a verdict if it cannot be decided. If not, a bounded decision has ended; for any other,
- * call turn_step() until it returns true. In: *answer is all 0. */
+ * bounded: performs only work that takes tens of microseconds, without allocation. proof: NULL, or
+ * receives the proof of a decision that is not bounded: it is complete at the end if the frames are
+ * separated; if they overlap, out->overlap is a time of overlap. Returns whether the decision is
+ * complete and *answer set, without a verdict if the pair cannot be decided. If it is not complete,
+ * a bounded decision has ended; for any other, call turn_step() until it returns true. In: *answer
+ * is all 0. */
 bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
                 struct turn_decision *out, struct turn_proof *proof, struct fmb_answer *answer);
 

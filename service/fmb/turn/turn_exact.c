@@ -1,8 +1,8 @@
 /* The proof. Let p(a, b) be the polynomial of vertices a and b, which has the sign of n . (b - a),
- * with coefficients c_k(a, b), each of which is least for some a and b. If the least of each is
- * positive, the frames are apart on the closed interval. If none is negative, n . (b - a) >= 0 at
- * all its times; if besides some least coefficient is positive, no p is identically 0, so that each
- * is positive inside the interval, where the frames are apart.
+ * with coefficients c_k(a, b). Each coefficient is least for some a and b. If all these least
+ * coefficients are positive, the frames are apart on the closed interval. If none is negative,
+ * n . (b - a) >= 0 at all times of the interval. If in addition one of them is positive, no p is
+ * identically 0; then each p is positive inside the interval, where the frames are apart.
  *
  * If n . (b - a) >= 0 at some time, n is not 0 and n . x is not constant on one of the frames, then
  * the relative interior of that frame has no point with the greatest (least) n . x, and the two
@@ -54,7 +54,7 @@ void turn_exact_end(struct turn_exact *exact)
 
 typedef mpz_t vector[3];
 
-/* Of one frame over an interval: coefficients of N(q), [row][column], and of |q|^2. */
+/* For one frame over an interval: the coefficients of N(q), [row][column], and of |q|^2. */
 struct quadratic {
     vector matrix[3][3];
     mpz_t norm[3];
@@ -147,7 +147,7 @@ static void get_difference(const struct turn_exact *exact, int f, unsigned from,
         mpz_sub(out[axis], out[axis], scratch[axis]);
 }
 
-/* Sets m, or e and f. Returns false if it is 0. */
+/* Sets m, or e and f. Returns false if one of them is 0. */
 static bool set_direction(const struct turn_exact *exact, const struct turn_corners *corners,
                           int sign, struct work *work)
 {
@@ -206,7 +206,8 @@ static bool add_least(const struct turn_exact *exact, int f, vector x, int way, 
     return constant;
 }
 
-/* Of a direction fixed in a frame. Returns whether n . x is not constant on that frame. */
+/* Sets the polynomial of a direction fixed in a frame. Returns whether n . x is not constant on
+ * that frame. */
 static bool set_fixed(const struct turn_exact *exact, int f, mp_bitcnt_t bits, struct work *work)
 {
     struct quadratic *own = &work->of[f], *other = &work->of[!f];
@@ -240,7 +241,7 @@ static bool set_fixed(const struct turn_exact *exact, int f, mp_bitcnt_t bits, s
     return !constant;
 }
 
-/* Of a product of edges. Returns whether it is certainly not 0 at any time. */
+/* Sets the polynomial of a product of edges. Returns whether the product is certainly never 0. */
 static bool set_product(const struct turn_exact *exact, mp_bitcnt_t bits, struct work *work)
 {
     vector edge[2][3];

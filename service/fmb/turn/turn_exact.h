@@ -1,14 +1,14 @@
 /* Directions that separate a pair that turns over an interval, in integers: the polynomials of
- * turn_path.h, of directions given by vertices. No shared state. */
+ * turn_path.h, for directions given by vertices. No shared state. */
 #ifndef FMB_TURN_EXACT_H
 #define FMB_TURN_EXACT_H
 
 #include "support_integers.h"
 #include "turn_path.h"
 
-/* What an interval is for a direction. */
+/* What a direction proves of an interval. */
 enum turn_outcome {
-    TURN_OPEN,  /* not known */
+    TURN_OPEN,  /* nothing */
     TURN_APART, /* the frames are apart */
     TURN_CLEAN, /* apart inside the interval; they may touch at its ends, and do not overlap there
                  */
@@ -26,8 +26,8 @@ struct turn_exact {
 void turn_exact_begin(const struct turn_path *path, struct turn_exact *out);
 void turn_exact_end(struct turn_exact *exact);
 
-/* m := what a direction by vertices, or its opposite if sign is -1, is a multiple of: m, or e and f
- * (turn_path.h). In: all are 0. */
+/* m := integer multiples of the vectors of a direction by vertices, or of its opposite if sign is
+ * -1: m, or e and f (turn_path.h). In: all are 0. */
 void turn_exact_direction(const struct turn_exact *exact, const struct turn_corners *corners,
                           int sign, mpz_t m[2][3]);
 

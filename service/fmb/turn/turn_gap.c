@@ -8,7 +8,7 @@ enum { GAP_LOOKS_MAX = 2000, GAP_LOOKS_STEP = 16 };
 /* Pieces shorter than this use a second direction. */
 static const double wide_piece = 0x1p-6;
 
-/* Of fmb.h, with a margin for the rounding of the largest coordinate. */
+/* The limit of fmb.h, with a margin for the rounding of the largest coordinate. */
 static const double limit = 0.95e-12;
 
 /* Returns a lower bound, up to rounding, of the largest coordinate of a vertex at s. */
@@ -36,8 +36,8 @@ static void push(struct turn_gap *gap, double lo, double hi, double least, bool 
     gap->piece[gap->count++] = (struct turn_piece){lo, hi, least, looked};
 }
 
-/* Takes the gap at the middle of the piece that is looked at, and bounds it over the piece by its
- * direction n, in the order of the path. In: the pose of the path is that in the middle. */
+/* Takes the gap at the middle of the piece being examined, and bounds the gap over the piece by the
+ * direction n, in the order of the path. In: the path is posed at the middle. */
 static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
 {
     struct turn_direction direction[3];
@@ -45,7 +45,8 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
     const double enough = fmin(gap->at.bounds[1], gap->best.bounds[1]) - gap->tight;
     double least = next->least;
     gap->at.time = gap->path->pair.at * gap->path->pair.frames->duration;
-    /* Also with the vertices that come into play within the piece, and the last good direction. */
+    /* Also tries the vertices that become supporting within the piece, and the last good direction.
+     */
     for (int k = 0; k < 3 && least < enough; k++) {
         const double slack = k == 1 ? next->hi - next->lo : 0;
         const unsigned count =
@@ -74,8 +75,9 @@ static double proved_by(const struct support_pair *pair, const double n[FMB_DIM_
     return -support_farthest(pair, outward, &column) - (1.25 * pair->error + pair->radius[1]);
 }
 
-/* A look that proves no verdict: the frames are as near as the point that was found. Its direction,
- * of a small difference of large numbers, may be poor: or else the last good one. */
+/* Takes a search that proves no verdict. The frames are at most as far apart as its nearest point.
+ * Its direction, computed from a small difference of large numbers, may be poor; the last good
+ * direction replaces it if that proves more. */
 static void take_unsure(struct turn_gap *gap, struct support_nearest *nearest)
 {
     const struct support_pair *pair = &gap->path->pair;
@@ -108,7 +110,7 @@ static void take_known(struct turn_gap *gap)
     take(gap, n);
 }
 
-/* Looks at the middle of a piece. */
+/* Examines the middle of a piece. */
 static void look(struct turn_gap *gap, struct turn_piece piece)
 {
     struct support_pair *pair = &gap->path->pair;
@@ -120,7 +122,8 @@ static void look(struct turn_gap *gap, struct turn_piece piece)
     turn_path_pose(gap->path, 0.5 * (piece.lo + piece.hi));
     support_toward(pair, toward);
     enum fmb_verdict cores = support_search_from(pair, toward, INFINITY, &nearest);
-    /* A simplex with the origin on its boundary proves nothing: another beginning, another one. */
+    /* A simplex with the origin on its boundary proves nothing. Another first direction may lead to
+     * another simplex. */
     for (int k = 0; k < 2 && cores == 0 && !gap->separated; k++) {
         const double turned[FMB_DIM_MAX] = {toward[1] - toward[2], -toward[0], toward[0]};
         memcpy(toward, turned, (size_t) pair->dim * sizeof *toward);
@@ -152,7 +155,7 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;
-    /* The ends first, where the least gap often is. */
+    /* The ends come first: the gap is often least there. */
     push(out, 0, 1, -INFINITY, false);
     push(out, 1, 1, -INFINITY, false);
     push(out, 0, 0, -INFINITY, false);

@@ -9,7 +9,7 @@ static const double binomial[6] = {1, 5, 10, 10, 5, 1};
 
 /* ---- Poses ---- */
 
-/* The position at the end is p + v T without an end: the differences of p and of v T are rounded
+/* Without an end, the position at the end is p + v T: the differences of p and of v T are rounded
  * once each. */
 void turn_path_set(const struct frame_pair *frames, struct turn_path *out)
 {
@@ -171,9 +171,9 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
             out->m[0][axis] = -out->m[0][axis];
 }
 
-/* A vertex of one frame and a face of the other: the frame of the face, which has more vertices
- * there. Two edges that are not parallel: their product. Two parallel edges: either frame may do.
- */
+/* For a vertex of one frame and a face of the other, the direction is fixed in the frame of the
+ * face, which has more supporting vertices. For two edges that are not parallel it is their
+ * product. For two parallel edges either frame may do. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
                          double slack, struct turn_direction out[3])
 {
@@ -231,7 +231,7 @@ double turn_along(struct turn_path *path, const struct turn_direction *direction
 
 /* ---- Polynomials ---- */
 
-/* Of one frame over an interval: coefficients of N(q) and of |q|^2. */
+/* For one frame over an interval: the coefficients of N(q) and of |q|^2. */
 struct turn_quadratic {
     double matrix[3][FMB_DIM_MAX][FMB_DIM_MAX];
     double norm[3], largest;
@@ -287,8 +287,8 @@ static void subtract_support(const struct support_view *view, double c[6][FMB_DI
     }
 }
 
-/* The least coefficients of n . (b - a), and what bounds those of |n|; both times |q_A|^2 |q_B|^2.
- * A coefficient k is off by C(5, k) error. */
+/* The least coefficients of n . (b - a), and bounds of the coefficients of |n|; both times |q_A|^2
+ * |q_B|^2. Coefficient k is off by C(5, k) error. */
 struct turn_polynomial {
     double value[6], length[6], error;
     double below[6]; /* coefficients of a polynomial that is at most |n| */

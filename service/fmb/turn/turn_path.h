@@ -1,4 +1,4 @@
-/* A pair of frames of which a placement has an end, in doubles: poses within the window, and
+/* A pair of frames in which a placement has an end, in doubles: poses within the window, and
  * directions that separate the frames over an interval of it. Times are fractions s = t / T.
  *
  * A direction n turns with A, or with B, or is the product of an edge of each. The frames are apart
@@ -11,14 +11,14 @@
  *   n = N_A e x N_B f         n . D + (x x f) . b + (y x e) . a,  x = N_B^T N_A e, y = N_A^T N_B f
  *
  * (in the last, already times one factor each, since N u x N v = |q|^2 N (u x v)). A polynomial is
- * sum_k c_k s^k (1 - s)^(5 - k) over an interval mapped to [0, 1]: its Bernstein coefficients times
- * binomials, called coefficients below. They are convolutions of those of the factors (motion.h),
- * and linear in a and b. If the least of each coefficient over all a and b, a support in one
- * direction, is positive, so is every polynomial on the closed interval. What is constant in the
- * frame of the direction takes a single interval.
+ * sum_k c_k s^k (1 - s)^(5 - k) over an interval mapped to [0, 1]. The c_k are its Bernstein
+ * coefficients times binomials, and are called coefficients below. They are convolutions of the
+ * coefficients of the factors (motion.h), and linear in a and b. The least value of a coefficient
+ * over all a and b is a support in one direction. If all these least values are positive, so is
+ * every polynomial on the closed interval. A separation that is constant in the frame of the
+ * direction takes a single interval.
  *
- * Accuracy, with u = 2^-53, L_A the greatest |q_A|^2 of both ends of the interval and r the
- * reaches.
+ * Accuracy, with u = 2^-53, L_A the greater |q_A|^2 of both ends of the interval and r the reaches.
  *
  *   q(s)   (1 - s) q0 + s q1 passes two roundings a component; since q0 . q1 > 0, (1 - s) |q0| +
  *          s |q1| <= sqrt(2) |q(s)|: off by at most 2.9 u |q(s)|
@@ -33,11 +33,11 @@
  *   dots   with a vertex: 3.1 u, with D: 3.1 u of rounding and 3.1 u of D
  *
  * So no coefficient of the three terms is off by more than 75 u C(5, k) L_A L_B |m| (r_A + r_B +
- * |D|) and the slack of the stored vertices; their sum by 3 u more. TURN_ERROR is 80 u. Underflow:
+ * |D|) plus the slack of the stored vertices; their sum by 3 u more. TURN_ERROR is 80 u. Underflow:
  * lengths are above 2^-200 and quaternions in [1, 2) up to components that do not matter: 2^-900.
  *
- * A radius R adds R |n|: |n| is at most the coefficients of |q_A|^2 |q_B|^2 |m|, or the lengths of
- * those of n in the last case. No shared state. */
+ * A radius R adds R |n|. |n| is at most the polynomial with the coefficients of |q_A|^2 |q_B|^2 |m|
+ * or, in the last case, with the lengths of the coefficients of n. No shared state. */
 #ifndef FMB_TURN_PATH_H
 #define FMB_TURN_PATH_H
 
@@ -49,7 +49,7 @@ struct turn_path {
     double q[2][2][4];                  /* [frame][begin, end] */
     double position[2][2][FMB_DIM_MAX]; /* [frame][begin, end]; the end rounded twice */
     double offset[2][FMB_DIM_MAX];
-    double farthest; /* bounds the length of the offset, and what its error is relative to */
+    double farthest; /* bounds the length of the offset; its error is relative to this */
 };
 
 /* Sets the pair at its beginning. The pair points to frames and into itself: not to be copied. */
@@ -63,11 +63,12 @@ void turn_path_at(const struct turn_path *path, int f, double s, double q[4],
 void turn_path_pose(struct turn_path *path, double s);
 
 /* Sets the direction of a search that ended with a simplex of dim + 1 vertices, which contains the
- * origin up to rounding: that of the facet nearest to the origin, into the simplex. */
+ * origin up to rounding: the normal of the facet nearest to the origin, pointing into the simplex.
+ */
 void turn_facet_direction(const struct support_pair *pair, struct support_nearest *nearest);
 
-/* Returns the verdict at s that doubles prove, or 0. In: usable; toward: a direction to begin with,
- * or 0. */
+/* Returns the verdict at s that doubles prove, or 0. In: the pair is usable; toward: a direction to
+ * begin with, or 0. */
 enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward[FMB_DIM_MAX],
                            struct support_nearest *nearest);
 
@@ -92,8 +93,9 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
 void turn_body_direction(const struct support_view *view, const double n[FMB_DIM_MAX],
                          double out[FMB_DIM_MAX]);
 
-/* Sets up to three directions near the nearest direction of a look at the present pose. slack: of
- * the vertices that count as supporting, relative to the reach. Returns their number. */
+/* Sets up to three directions near the direction of the nearest point at the present pose, which a
+ * search gave. slack: tolerance, relative to the reach, for vertices to count as supporting.
+ * Returns the number of directions. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
                          double slack, struct turn_direction out[3]);
 
@@ -104,21 +106,22 @@ double turn_along(struct turn_path *path, const struct turn_direction *direction
 void turn_normal(const struct turn_path *path, const struct turn_direction *direction,
                  double out[FMB_DIM_MAX]);
 
-/* Returns a lower bound of n . (b - a) / |n| over the interval [lo, hi], less the radii: a positive
- * one proves that the frames are apart. -INFINITY if none is known. A quotient of polynomials is at
- * least the least quotient of their coefficients, if those of the divisor are positive. It is |n|
- * if a coefficient is negative, and the direction is fixed in a frame; if it is a product, what n
- * is along one vector, the middle one of its coefficients, which is less. */
+/* Returns a lower bound of n . (b - a) / |n| over the interval [lo, hi], less the radii, or
+ * -INFINITY if none is known. A positive bound proves that the frames are apart. A quotient of
+ * polynomials is at least the least quotient of their coefficients, if the coefficients of the
+ * divisor are positive. If a coefficient of the dividend is negative, the divisor is |n| for a
+ * direction that is fixed in a frame; for a product it is the component of n along one vector, the
+ * middle coefficient of n, which is at most |n|. */
 double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
                      double lo, double hi);
 
-/* Returns whether a direction, or its opposite if sign is -1, might separate the frames, weakly: a
- * guess. No coefficient is far below 0. */
+/* Returns whether a direction, or its opposite if sign is -1, might separate the frames weakly: no
+ * coefficient is far below 0. This proves nothing. */
 bool turn_may_separate(const struct turn_path *path, const struct turn_direction *direction,
                        double sign, double lo, double hi);
 
-/* Lists vertices with nearly the greatest n . v. In: n, body coordinates. out: [count of vertices]
- */
+/* Lists the vertices v with nearly the greatest sign n . v. Returns their number. In: n is in body
+ * coordinates; out has the capacity for all vertices. */
 unsigned turn_farthest(const struct support_view *view, const double n[FMB_DIM_MAX], double sign,
                        double slack, uint16_t *out);
 
