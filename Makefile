@@ -16,7 +16,7 @@
 #                 accuracy, depth, checked, hull-poses, soak: campaigns that take longer
 #   deps-fuzz     fuzz, fuzz-afl, fuzz-merge, fuzzers
 #   deps-deb      deb: packages of Debian, into build/deb; deb-test: tries them in a chroot (root);
-#                 release: tarball, packages and their sums, into build/release
+#                 release: tarball, packages and their checksums, into build/release
 #                 (tests/deb/readme.sh SUITE follows README.md in a chroot)
 #   deps-aarch64  aarch64: fmb for AArch64, which 'make test' then emulates
 #
@@ -71,8 +71,8 @@ quiet := $(if $(V),,@)
 
 # ---- Flags ----
 
-# What names the folder of the build for debuggers is relative, also where the linker optimises, and where the
-# assembler adds it to objects that the linker may optimise ('whole' below).
+# Makes the build folder in debug information relative. The linker needs this option too where it optimises; so does
+# the assembler, for objects that the linker may optimise ('whole' below).
 mode_link_release := -ffile-prefix-map='$(subst ','\'',$(CURDIR))'=.
 mode_flags_release := -O2 -g1 -DNDEBUG $(mode_link_release)
 mode_flags_debug := -O0 -g3
@@ -432,7 +432,7 @@ fill_in = sed -e 's|@PREFIX@|$(call sed_text,$(PREFIX))|' -e 's|@LIBDIR@|$(call 
 # Sets the mode before the text is written, whatever the umask.
 filled = $(INSTALL) -m 644 /dev/null $1 && $2 > $1
 root := $(DESTDIR)$(PREFIX)
-# $(call needs,VARIABLE,FOLDER,FOLDERS): how to set the variable, unless the folders that are searched have this one.
+# $(call needs,VARIABLE,FOLDER,FOLDERS): prints how to set VARIABLE, unless the searched FOLDERS contain FOLDER.
 needs = case ":$3:" in *":$2:"*) ;; *) printf '  export %s="%s$${%s:+:$$%s}"\n' $1 "$2" $1 $1 ;; esac;
 of_system := $(filter /usr/lib% /usr/local/lib%,$(LIBDIR))
 .PHONY: install install-strip uninstall
@@ -490,13 +490,13 @@ deb:
 deb-test: deb programs
 	FMB_BUILD=$(B) bats --tap tests/deb/deb.bats
 
-# What is published, of the last commit: the packages are built from the tarball.
+# Makes the files to publish from the last commit. The packages are built from the tarball.
 .PHONY: release
 released := fmb-$(VERSION)
 release:
 	@grep -q '^## $(VERSION) ([0-9-]*)$$' .github/CHANGELOG.md || { \
 		echo 'make $@: .github/CHANGELOG.md has no section "## $(VERSION) (DATE)"' >&2; exit 1; }
-	@git diff --quiet HEAD || { echo 'make $@: there are changes that are not committed' >&2; exit 1; }
+	@git diff --quiet HEAD || { echo 'make $@: there are uncommitted changes' >&2; exit 1; }
 	rm -rf build/release
 	mkdir -p build/release
 	git archive --prefix=$(released)/ -o build/release/$(released).tar.gz HEAD

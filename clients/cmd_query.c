@@ -113,7 +113,7 @@ struct query {
     int64_t scenes, empty;   /* empty: scenes without a pair to decide */
     bool moves;              /* a body moves in a scene whose duration is not 0 */
     int64_t still_body;      /* first body that would move if the duration were not 0; 0: none */
-    int64_t uneven_body;     /* first body that turns_unevenly(); 0: none */
+    int64_t uneven_body;     /* id of the first body that turns_unevenly(); 0: none */
     int worst;               /* severity of all pairs */
     double outside;          /* of all scenes */
 };
@@ -169,8 +169,8 @@ static void take_answer(void *user, const struct fmb_client_answer *answer)
     progress_to(++query->answered, query->pairs);
 }
 
-/* Whether the orientation at the end differs from the one at the begin, and the lengths of the two
- * differ by more than rounding. */
+/* Whether the body turns, and its quaternions at the start and at the end of the window differ in
+ * length by more than rounding errors. */
 static bool turns_unevenly(const struct fmb_placement *body)
 {
     double square[2] = {0, 0}, product = 0, largest = 0;
@@ -274,7 +274,7 @@ static void report_limits(const struct query *query)
                  query->still_body);
     if (query->uneven_body)
         complain("body %" PRId64
-                 " turns unevenly: its orientations at the begin and at the end of "
+                 " turns unevenly: its orientations at the start and at the end of "
                  "the window have different lengths",
                  query->uneven_body);
     if (query->empty > 0 && query->scenes == 1)

@@ -113,7 +113,8 @@ static bool print_rows(struct robot_run *run, struct joint_table *table, bool pr
     return good && row != JOINT_ROW_BAD;
 }
 
-/* The windows of a table with times are not those in which bodies of the world have an end. */
+/* Refuses a table with times if a body of the world has an end: the end is stated for the window of
+ * the world, not for the windows of the table. */
 static bool check_ends(const struct robot_run *run, const struct joint_table *table)
 {
     const struct fmb_scene *scene = &run->scene->owner.scene;

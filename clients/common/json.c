@@ -139,7 +139,7 @@ typedef bool read_function(const struct place *at, void *out);
 struct key {
     const char *name;
     bool required;
-    read_function *read; /* NULL: read_members() leaves the key out */
+    read_function *read; /* NULL: read_members() skips the key */
     size_t offset;       /* of the value in the struct of the object */
 };
 
@@ -412,8 +412,8 @@ static bool read_orientation(const struct place *at, void *out)
 
 static read_function read_frames;
 
-/* In the order of reading. A frame has those from SHAPE to ORIENTATION_XYZW, an end the last three
- * of these. */
+/* In the order of reading. A frame has the keys from SHAPE to ORIENTATION_XYZW; an end has the last
+ * three of these. */
 enum { ID, NAME, GROUP, VELOCITY, LINK, SHAPE, ORIGIN, COMPONENTS, VERTICES, SIZE, RADIUS, LENGTH };
 enum { SIDES = LENGTH + 1, POSITION, ORIENTATION, ORIENTATION_XYZW, FRAMES, END, BODY_KEYS };
 
@@ -489,7 +489,7 @@ static bool check_keys(const struct place *member, int shape, bool within_frames
            check_present(&member[ORIGIN]);
 }
 
-/* Finds the keys from `first` to before `end`. */
+/* Finds the members with keys `first` to `end` - 1. */
 static bool find_keys(const struct place *at, int first, int end, struct place member[BODY_KEYS])
 {
     memset(member, 0, BODY_KEYS * sizeof *member);
@@ -506,7 +506,7 @@ static bool find_keys(const struct place *at, int first, int end, struct place m
     return true;
 }
 
-/* Reads the keys from `first` to before `end`, which include those of a frame. */
+/* Reads the members with keys `first` to `end` - 1, which include all keys of a frame. */
 static bool read_keys(const struct place *at, int first, int end, struct place member[BODY_KEYS],
                       struct body *out)
 {
@@ -656,7 +656,8 @@ static bool add_id(const struct place *at, int64_t id, const char *name, size_t 
     return true;
 }
 
-/* Reads the end of a body that is complete but for it. What is missing is as at the begin. */
+/* Reads the end of a body whose other fields are complete. A missing member of the end has the
+ * value at the start of the window. */
 static bool read_end(const struct place *at, struct fmb_placement *placement)
 {
     struct place member[BODY_KEYS];

@@ -34,7 +34,7 @@
  * - position and origin: 0. (A body that is one frame of components needs one of position,
  *   orientation and origin; one of vertices does not.)
  * - orientation: not turned. velocity: at rest.
- * - position and orientation of end: those of the body at the begin.
+ * - position and orientation of end: the position and orientation of the body.
  *
  * origin of a body that is one frame is its position, unless it has position or orientation too;
  * then, as in frames, it is in body coordinates. In frames, only boxes, capsules and cylinders have
@@ -45,7 +45,7 @@
  * body has the same name.
  *
  * "end": {"position": [0,0,1], "orientation": [1,0,0,1]}, in place of velocity, is the pose of a
- * body at the end of the window, which then is not 0 long. fmb.h says how the body moves there.
+ * body at the end of the window. The duration then must not be 0. fmb.h defines the motion.
  *
  * An input holds one or more such objects, one after the other. */
 #ifndef JSON_H

@@ -29,7 +29,7 @@ static void begin_json(struct report_rows *rows)
     json_begin(&rows->printer.json, "pairs", '[');
 }
 
-/* label: NULL: none. */
+/* Writes a label in parentheses; NULL: writes nothing. */
 static void put_label(FILE *out, const char *label)
 {
     if (!label)

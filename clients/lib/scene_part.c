@@ -84,7 +84,7 @@ static struct held_body *entry_of(const struct part *part, int32_t i)
 
 /* ---- Queries ---- */
 
-/* Converts the i-th placement. At an instant, no body reaches the end of its motion. */
+/* Converts the i-th placement. In a scene at an instant nothing moves, so the end is left out. */
 static void convert(const struct part *part, unsigned i, const struct handle *handle,
                     unsigned char *bytes, struct query_placement *out)
 {

@@ -178,14 +178,14 @@ static bool is_followed(struct log_reader *reader, int64_t end)
 
 /* ---- Searches. After an error they end at once, without a result ----------------------------- */
 
-/* The first position from offset on that is not in a hole, or last. The caller reads there in any
- * case, which detects truncation. */
+/* Returns the first position from offset on that is not in a hole, but at most last. The caller
+ * reads there in any case, which detects truncation. */
 static int64_t skip_hole(const struct log_reader *reader, int64_t offset, int64_t last)
 {
     const off_t data = lseek(reader->fd, (off_t) offset, SEEK_DATA);
     if (data >= 0)
         return least(data, last);
-    return errno == ENXIO ? last : offset; /* only holes follow; or the file system does not know */
+    return errno == ENXIO ? last : offset; /* ENXIO: only a hole follows; else: unknown */
 }
 
 /* The first sync word that begins before end, or end. In: at least SYNC_BYTES - 1 bytes after end

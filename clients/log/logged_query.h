@@ -42,8 +42,8 @@ const char *logged_result_read(struct logged_result *out, enum log_kind kind, co
  * a body. */
 bool logged_status_is_transient(int32_t status);
 
-/* Encodes a query that was decoded. Returns its size; 0 if it exceeds a datagram, or the struct
- * does not hold all of it. */
+/* Encodes a decoded query. Returns its size, or 0 if it exceeds a datagram, or if the struct does
+ * not hold all of the query. */
 size_t logged_query_write(const struct logged_query *query, unsigned char out[QUERY_BYTES_MAX]);
 
 struct owned_scene;

@@ -42,8 +42,8 @@ struct match_item {
     bool second;    /* of a result: its query has another one */
     /* For the user: */
     bool unreadable;    /* only the key can be read */
-    bool sent_whole;    /* sent with frames, after UNKNOWN_BODY, */
-    bool defined;       /* of all its bodies */
+    bool sent_whole;    /* sent with frames, after UNKNOWN_BODY */
+    bool defined;       /* sent_whole: the frames of all bodies are known */
     bool left_over;     /* a recording by another client lacks this query */
     bool by_order;      /* of a golden result: of another client, matched by its order */
     bool has_own;       /* of a golden result: its own query is in the golden log, */

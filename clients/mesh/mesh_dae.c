@@ -45,8 +45,9 @@ struct dae {
 
 #define refuse(dae, element, ...) mesh_refuse((dae)->build.source, (element)->begin, __VA_ARGS__)
 
-/* Returns the table of the ids of a kind, which files repeat in elements of another; NULL: nothing
- * refers to this kind. Nodes, which files may repeat millions of times, come first. */
+/* Returns the table of the ids of a kind of element; NULL: nothing refers to this kind. Each kind
+ * has its own table, since files use the same id in elements of different kinds. Nodes come first,
+ * since files may contain millions of them. */
 static struct xml_element **ids_of(struct dae *dae, const char *kind)
 {
     static const char *const kinds[KINDS] = {"node",     "float_array", "source",

@@ -28,8 +28,8 @@
  * to PAGE_STEPS_BYTES, steps that differ up to PAGE_DIFFERENT_BYTES more. Separated pairs without a
  * gap within the margin are kept up to PAGE_FAR_BYTES in all. Of a step PAGE_PAIRS_MAX pairs that
  * differ are kept, as many in contact or near, and as many others. The page says what was left out.
- * PAGE_FRAME_PAIRS_MAX pairs of frames are decided at most, in about a second: after that, whole
- * bodies are drawn as in contact. */
+ * At most PAGE_FRAME_PAIRS_MAX pairs of frames are decided, which takes about a second. Beyond this
+ * limit, whole bodies are drawn as in contact. */
 enum {
     PAGE_BYTES_MAX = 40 << 20,
     PAGE_STEPS_BYTES = 64 << 20,
@@ -59,8 +59,7 @@ struct page_step {
     double margin;     /* 0: none */
     const char *label; /* NULL or "": none */
     bool differs;      /* the answers then and now differ */
-    /* The bodies exist until page_step_end(): of pairs in contact, the frames in contact are told
-     * from the others. */
+    /* The bodies exist until page_step_end(), so that the frames in contact can be determined. */
     bool bodies_remain;
 };
 

@@ -5,8 +5,8 @@
 
 enum { NOTE_MAX = 100 };
 
-/* Adds a body, in memory of the scene. Logs also contain queries that were refused: their bodies
- * may be invalid. */
+/* Adds a body. Its frames are stored in `memory`. Logs also contain queries that were refused:
+ * their bodies may be invalid. */
 static void add_body(struct page *page, const struct exchange *exchange, int32_t i,
                      struct owned_scene *memory)
 {

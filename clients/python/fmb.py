@@ -633,7 +633,7 @@ class Edge(NamedTuple):
     at: tuple[float, float]
     clearance: float  #: proven lower bound of the least gap, if free or near; else 0. Infinite if there are no pairs
     closest: float  #: upper bound of the least gap, from the times examined; infinite if none was
-    pair: Optional[tuple[int, int]]  #: indices in the scene: the pair in contact or undecided, else of `closest`
+    pair: Optional[tuple[int, int]]  #: indices in the scene: pair in contact or undecided, else the pair of `closest`
     names: Optional[tuple[Optional[str], Optional[str]]]  #: of this pair
 
 
@@ -842,10 +842,10 @@ def _advice(status: int, client: Optional[Client]) -> str:
 
 
 def normalized(orientations: Array) -> Any:
-    """Returns orientations (n, 4), in 2D (n, 2), with the length 1, up to rounding.
+    """Returns orientations (n, 4), in 2D (n, 2), scaled to length 1, up to rounding.
 
-    An orientation stands for the same rotation at any length, but between orientations of different lengths
-    a body turns unevenly. Raises ValueError if one is all 0 or not finite.
+    The length of a quaternion does not change its rotation, but between quaternions of different lengths a
+    body turns unevenly. Raises ValueError if a quaternion is all 0 or not finite.
     """
     view, shape = _flat("orientations", orientations, "d", ("n", "4"))
     flat, out = view.cast("B").cast("d"), array("d")
@@ -871,7 +871,8 @@ class Scene(_Handle):
     velocities: (n, dim), per second; None: at rest
     end_positions, end_orientations: the poses at the end of the window, in place of velocities: the bodies
         turn by less than half a turn. Give quaternions of equal lengths, as normalized() returns them:
-        with others, a body turns unevenly. If only one of the two is given, bodies do not move, or turn
+        otherwise bodies turn unevenly. Without end_positions, bodies do not move; without
+        end_orientations, they do not turn
     names: n texts of at most 64 bytes of UTF-8; any of them may be None
     groups: (n,) int64; bodies of one group other than 0 are not tested against each other
     ids: (n,) int64, 1 to 2^53 - 1, under which the service caches the bodies; 0: it does not;
@@ -943,8 +944,8 @@ class Scene(_Handle):
               velocities: Optional[Array] = None, end_positions: Optional[Array] = None,
               end_orientations: Optional[Array] = None) -> None:
         """Sets positions (n, dim), orientations (n, 4), in 2D (n, 2), and velocities (n, dim) or the poses
-        at the end of the window, of all bodies; None: unchanged. Velocities remove ends, and ends remove
-        velocities."""
+        at the end of the window, of all bodies; None: unchanged. Setting velocities removes ends, and setting
+        ends removes velocities."""
         n = len(self.bodies)
         self._place(0, n, (n,), positions=positions, orientations=orientations, velocities=velocities,
                     end_positions=end_positions, end_orientations=end_orientations)
@@ -1049,8 +1050,8 @@ class Scene(_Handle):
                end_positions: Optional[Iterable[Array]] = None,
                end_orientations: Optional[Iterable[Array]] = None, **options: Any) -> Iterator[Answers]:
         """Yields the answers of one scene after the other. positions to end_orientations are as for place(),
-        with one more axis in front, that of the scenes; or they are iterables of such arrays. options are
-        those of decide()."""
+        with an additional first axis, the scenes; or they are iterables of such arrays. options: as for
+        decide()."""
         given = {name: _iterate(name, values) for name, values in (
             ("positions", positions), ("orientations", orientations), ("velocities", velocities),
             ("end_positions", end_positions), ("end_orientations", end_orientations))
@@ -1212,7 +1213,7 @@ class Robot(_Handle):
             joint, by name. Limits are not checked. A single row is a path of one pose
         world: as for scene(); its bodies must be at rest
         clearance: the clearance to prove; None: the margin of the world. 0: none is required, and the
-            clearance of each edge is found to within a tenth
+            clearance of each edge is determined to within a tenth
         """
         values = self._joint_values(rows)
         scene = self.scene(world)

@@ -253,8 +253,8 @@ static void set_orientation(const double *orientations, size_t i, int count, dou
     memcpy(out, orientations + i * (size_t) count, (size_t) count * sizeof *out);
 }
 
-/* Sets the end of a placement whose other rows are set. A part that it had not is as at the begin.
- */
+/* Sets the end of a placement whose other fields are set. A part of the end that was never set
+ * equals the pose at the start. */
 static void set_end(const struct rows *rows, size_t i, int dim, struct fmb_placement *out)
 {
     const int turns = dim == 2 ? 2 : 4;
@@ -276,7 +276,7 @@ static void set_end(const struct rows *rows, size_t i, int dim, struct fmb_place
     out->end_count = dim + out->orientation_count;
 }
 
-/* Returns a placement with the pose, and the velocity or the end, of row i of the arrays. */
+/* Returns a placement with the pose, and with the velocity or the end, of row i of the arrays. */
 static struct fmb_placement with_row(const struct fmb_flat_scene *scene, size_t placement, size_t i,
                                      const struct rows *rows)
 {
@@ -309,7 +309,7 @@ static void set_moved(struct fmb_flat_scene *scene, size_t end)
     scene->moved = end > scene->moved ? end : scene->moved;
 }
 
-/* Returns the name of the array in which the engine refuses a placement. */
+/* Returns the name of the array that makes the engine refuse a placement. */
 static const char *wrong_array(const struct fmb_placement *placed)
 {
     struct fmb_placement begin = *placed;

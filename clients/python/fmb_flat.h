@@ -88,8 +88,8 @@ void fmb_flat_scene_forked(struct fmb_flat_scene *scene);
 const char *fmb_flat_why(const struct fmb_flat_scene *scene);
 
 /* Sets poses and motions of placements first to first + count - 1; changes none after an error.
- * Velocities take away the ends of these placements; ends take away their velocities. A part of the
- * end that was never set is the one at the begin.
+ * Setting velocities removes the ends of these placements; setting ends removes their velocities. A
+ * part of the end that was never set equals the pose at the start.
  * In:  positions         [count][dim], or NULL: unchanged
  *      orientations      [count][4], in 2D [count][2], or NULL: unchanged
  *      velocities        [count][dim], per second, or NULL: unchanged

@@ -63,8 +63,8 @@ void verify_answer(const struct fmb_scene *scene, const char *whose,
         snprintf(text, VERIFY_TEXT_MAX, "%s certificate does not hold: %.200s", whose, why);
     else
         snprintf(text, VERIFY_TEXT_MAX,
-                 "no certificate: bodies that turn and touch have none, nor have numbers that "
-                 "span more than 512 bits");
+                 "no certificate: there is none for bodies that turn and touch, or for numbers "
+                 "that span more than 512 bits");
     *answer = (struct fmb_client_answer){
         .a = answer->a, .b = answer->b, .status = FMB_CANNOT_DECIDE, .text = text};
 }

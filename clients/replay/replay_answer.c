@@ -57,9 +57,9 @@ bool replay_on_answered(void *user, struct match_item *query, const struct new_r
     return is_last;
 }
 
-/* Sends the bodies of a query that has no space for their frames ahead of it, as many in one scene
- * query as fit. The query itself then names them by handle. A service caches bodies with an id
- * only. */
+/* Sends the bodies of a query ahead of it, if the query has no space for their frames. Each scene
+ * query carries as many bodies as fit, with ids: a service caches only bodies with an id. The query
+ * itself then names the bodies by handle. */
 static void supply_service(struct replay *replay, struct match_item *query)
 {
     const struct query_placement *placement = replay->query.placement;

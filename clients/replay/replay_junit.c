@@ -15,7 +15,7 @@ struct junit {
     const struct replay_options *options;
     int64_t first_utime;
     int log, channel, lines;
-    const char *label; /* of the scenes of the case; "": those without one */
+    const char *label; /* of the scenes of the case; "": they have none */
 };
 
 static void write_xml(FILE *out, const char *text)
@@ -43,7 +43,7 @@ static void write_line(void *user, const struct difference *difference)
                 junit->first_utime);
 }
 
-/* A case: scenes with a label, or the queries of a channel without one. */
+/* Writes a case: the scenes with a label, or the queries of a channel without one. */
 static void write_queries(struct junit *junit, struct listing *list, const char *label,
                           const struct tally_channel *channel)
 {

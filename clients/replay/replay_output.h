@@ -12,8 +12,7 @@
 /* Writes one line:
  *
  *     event 17  1.25 s  bodies table 7  verdict: touching, now separated
- *     event 19 (home)  1.5 s  bodies table 7  gap lower bound: 0.25, now 0.5 (+0.25), and 3 more
- * numbers
+ *     event 19 (home)  1.5 s  bodies table 7  gap lower bound: 2, now 3 (+1), and 3 more numbers
  *
  * The label of a scene follows the event. The time is log time, in seconds since first_utime.
  * Bodies without a name have their id. Of several numbers, the one that has changed most is
@@ -35,8 +34,8 @@ void replay_text_summary(FILE *out, const struct tally *tally);
  *                       "then": {"verdict": "touching"}, "now": {"verdict": "separated"}}],
  *      "not_listed": 0, "same": 12, "different": 1, ...}
  *
- * names: where a body has one; "label": of a scene that has one. not_listed: number of differences
- * beyond the limit. */
+ * names: only if a body has one; "label": only if the scene has one. not_listed: number of
+ * differences beyond the limit. */
 struct json_writer replay_json_begin(FILE *out);
 void replay_json_found(struct json_writer *json, const struct difference *difference,
                        const struct body_names *names, const char *log, int64_t first_utime);

@@ -8,13 +8,13 @@
  *   2. pair_queries()   numbers the clients of the replayed logs by first appearance, and the
  *                       queries of a client within their group (type, label, first pair; for
  *                       pairs, the ids of both bodies). Repeated queries, with the same ids,
- *                       are one, with several times. Then it numbers those of the golden log
- *                       in the same way: equal numbers are a pair. A golden log without
- *                       queries has only the types of its results: then the group is the
- *                       type, on both sides
+ *                       count as one query with several times. Then it numbers the queries
+ *                       of the golden log in the same way: equal numbers are a pair. A golden
+ *                       log without queries has only the types of its results: then the group
+ *                       is the type, on both sides
  *   3. rename_results() gives each golden result the key of the query that its own query is paired
- *                       with, of a repeated one that of the same repeat, so that match_all()
- *                       matches it as if it were recorded with that query */
+ *                       with; for a repeated query, the key of the same repeat. So match_all()
+ *                       matches the result as if it were recorded with that query */
 #include "replay_parts.h"
 
 #include "keyed_hash.h"
@@ -26,8 +26,8 @@
 enum pair_kind {
     PAIR_CLIENT, /* a client: its id */
     PAIR_IDS,    /* a query, or a result without queries: kind, client id, sequence number */
-    PAIR_TIME,   /* another time at which it was sent: the same, and the time */
-    PAIR_SENT,   /* a query of the replayed logs: the same, and the number of another time */
+    PAIR_TIME,   /* a repeat of such a query or result: the same, and its time */
+    PAIR_SENT,   /* a repeat in the replayed logs: as IDS, and the number of its time */
     PAIR_GROUP,  /* the queries of a client and group: number of the client, group */
     PAIR_QUERY   /* a query of the replayed logs: numbers of client and query, group */
 };
@@ -40,8 +40,8 @@ struct pair_key {
 
 struct pair_entry {
     struct pair_key key;
-    /* CLIENT: its number, from 1, or MATCHED; TIME: its number, from 2; GROUP: of queries, IDS: of
-     * times. */
+    /* CLIENT: its number, from 1, or MATCHED; TIME: its number, from 2; GROUP: number of queries;
+     * IDS: number of times. */
     int64_t count;
     int64_t utime;            /* IDS: the first time */
     struct match_item *query; /* QUERY, SENT: the query; IDS of the golden log: its counterpart */
@@ -74,7 +74,7 @@ static struct pair_entry *client_of(struct pairing *pairing, bool golden, int64_
     return entry_of(pairing, (struct pair_key){PAIR_CLIENT, golden, {client_id}, {{0}}});
 }
 
-/* last: 0 of IDS; of TIME the time, of SENT its number. */
+/* last: for IDS 0, for TIME the time, for SENT the number of the time. */
 static struct pair_entry *entry_of_ids(struct pairing *pairing, enum pair_kind what, bool golden,
                                        const struct match_key *key, int64_t last)
 {

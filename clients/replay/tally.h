@@ -61,8 +61,8 @@ struct tally {
     /* Only in the tally of the first log, for all logs: */
     struct tally_bus bus;
     int64_t first_utime; /* time of the first event, microseconds; 0: there is none */
-    /* A GHashTable of this log: the label of scenes, truncated as in struct difference, -> struct
-     * tally_channel, their queries, outcomes and differences. NULL: none are counted. */
+    /* A GHashTable of this log. It maps a label of scenes, truncated as in struct difference, to a
+     * struct tally_channel with their queries, outcomes and differences. NULL: there are none. */
     struct _GHashTable *labels;
 };
 

@@ -29,8 +29,9 @@ static bool is_chosen(const struct joints *joints, size_t j)
     return joints->given[j] || (joint->mimic_name && joints->given[joint->mimic]);
 }
 
-/* Whether a value this far outside the limits of joint j is refused. Limits bind the joints that a
- * controller moves: the value of a mimic joint is reported, as MoveIt accepts it. */
+/* Whether a value that is outside the limits of joint j, by this much, is refused. Limits apply to
+ * the joints that a controller moves. The value of a mimic joint that follows is only reported:
+ * MoveIt accepts it. */
 static bool is_refused(const struct joints *joints, size_t j, double by)
 {
     return isinf(by) || (joints->given[j] && by > joints->slack);

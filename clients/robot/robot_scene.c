@@ -284,7 +284,7 @@ static bool check_worlds(struct fmb_robot_scene *scene, const struct fmb_robot_w
                    worlds[w].scene->duration == out->duration ||
                    refuse_body(scene, worlds[w].name ? worlds[w].name : "",
                                &worlds[w].scene->placements[i],
-                               "its \"end\" is that of a window of another \"duration\"");
+                               "its \"end\" is for a window of another \"duration\"");
     return good;
 }
 

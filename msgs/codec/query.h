@@ -226,7 +226,8 @@ static inline void query_remove_far_gap(double margin, struct fmb_answer *answer
     memset(&answer->gap, 0, sizeof answer->gap);
 }
 
-/* Whether two gaps are equal bit for bit. Messages have the time with witness points only. */
+/* Whether two gaps are equal bit for bit. The time is compared only if there are witness points:
+ * otherwise messages do not contain it. */
 static inline bool query_same_gap(const struct fmb_gap *a, const struct fmb_gap *b)
 {
     return a->has_witness == b->has_witness &&

@@ -146,8 +146,8 @@ static bool check_name(struct check_context *context, const char *name)
     return !name || query_name_ok(name) || check_refuse(context, FMB_BAD_NAME, "name", NULL);
 }
 
-/* Whether the engine accepts these orientations. Its rules depend on the dimension of the body
- * only: any body of that dimension will do. */
+/* Whether the engine accepts these orientations. Its rules depend only on the dimension of the
+ * body, so any body of that dimension will do. */
 static bool are_orientations(int dim, const struct fmb_placement *placed, int end_count)
 {
     static const struct fmb_body any[FMB_DIM_MAX + 1] = {

@@ -626,7 +626,7 @@ squares() {
         {"id": 2, "shape": "cuboid", "origin": [1e200,0], "components": [[1,0],[0,1]]}]}'
     query "$scene" --certificate
     ended 1
-    [ "$(jq -r '.pairs[0].error' <<< "$output")" = "no certificate: bodies that turn and touch have none, nor have numbers that span more than 512 bits" ]
+    [ "$(jq -r '.pairs[0].error' <<< "$output")" = "no certificate: there is none for bodies that turn and touch, or for numbers that span more than 512 bits" ]
     query "$scene"
     ended 0
 }
@@ -794,7 +794,7 @@ refused() {
         "end": {"orientation": [2,0,0,2]}}, {"id": 8, "shape": "box", "size": [1,1,1], "position": [0,9,0], "end": {"orientation": [2,0,0,0]}}]}'
     for scenes in "$ending" "$ending $ending"; do
         query "$scenes"
-        said 'fmb: body 7 turns unevenly: its orientations at the begin and at the end of the window have different lengths'
+        said 'fmb: body 7 turns unevenly: its orientations at the start and at the end of the window have different lengths'
     done
     query "${ending/2,0,0,2/0.6,0,0,-0.8}" # of length 1, up to rounding
     said ''

@@ -631,7 +631,7 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     printf 'turn,slide,time\n0,0,0\n0,0,2\n' > t.csv
     refused 't.csv: it has times, but body 9 has an "end" of one window' robot.urdf --with world.json --joints-csv t.csv
     echo '{"dim": 3, "duration": 3, "bodies": []}' > longer.json
-    refused 'world.json: body 9: its "end" is that of a window of another "duration"' robot.urdf --with world.json --with longer.json
+    refused 'world.json: body 9: its "end" is for a window of another "duration"' robot.urdf --with world.json --with longer.json
     sed -i 's/"shape"/"link": "arm", &/' world.json
     refused 'world.json: body 9: a body that a link carries has no velocity or end of its own' robot.urdf --with world.json
 }

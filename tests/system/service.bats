@@ -172,7 +172,7 @@ grid_scenes() {
     started="${started-} $!"
     run "$FMB" query --timeout 0.2 --retries 50 --certificate "$BATS_TEST_TMPDIR/scene.json"
     [ "$status" = 1 ]
-    [[ ${lines[2]} == *"  1  2  not decided: no certificate: bodies that turn and touch have none, nor have numbers that span more than 512 bits" ]]
+    [[ ${lines[2]} == *"  1  2  not decided: no certificate: there is none for bodies that turn and touch, or for numbers that span more than 512 bits" ]]
 }
 
 # A scene may be answered in parts, and a part twice where the query was repeated.

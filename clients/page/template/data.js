@@ -22,7 +22,7 @@ const { steps } = data, isReplay = data.kind === "replay";
 
 /* An answer as the page uses it: {step, frames, verdict, error, contact, box, point, gap}. frames: the pairs of frames in
  * contact, [frame, frame, verdict, first time, last time]; box: lower ends, then upper ends; point: its time, then its
- * position; gap: bounds, and where there are witness points their time and they. */
+ * position; gap: bounds, then the time of the witness points and these points, if there are any. */
 function readAnswer(step, frames, { verdict, error, contact, box, point, gap, witness }) {
     return {
         step, frames, verdict: Math.max(verdictNames.indexOf(verdict), 0), error, contact, box: box && [...box.min, ...box.max],
@@ -58,7 +58,7 @@ function short(number, digits = 6) {
     return number === null ? "∞" : String(Number(number.toPrecision(digits)));
 }
 
-/* An interval, with more digits where these do not tell its ends apart. */
+/* An interval, with more digits than `least` if its ends would look equal. */
 function interval(low, high, least = 6) {
     if (low === high || low === null || high === null)
         return low === high ? short(low, least) : `${short(low, least)} to ${short(high, least)}`;
@@ -66,13 +66,13 @@ function interval(low, high, least = 6) {
     return [low, high].map((number) => short(number, digits)).join(" to ");
 }
 
-/* Times of the window of a step as times of the clock, with six digits of the window. */
+/* Converts an interval of times in the window of a step to clock times, with six digits of its duration. */
 function clockInterval({ t, T }, first, last) {
     const begin = unit ? t : 0, digits = 6 + Math.max(Math.floor(Math.log10(begin / (T || 1))), 0);
     return interval(begin + first, begin + last, Math.min(digits, 15));
 }
 
-/* The smallest of the numbers 1, 2 and 5, times a power of ten, that is not below x. */
+/* The smallest number, 1, 2 or 5 times a power of ten, that is not below x. */
 function roundUp(x) {
     const power = 10 ** Math.floor(Math.log10(x));
     return [1, 2, 5, 10].find((k) => k * power >= x) * power;

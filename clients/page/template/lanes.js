@@ -2,8 +2,8 @@
 
 const view = { from: 0, to: wholeSpan, width: 0 }; /* the shown part, in s, and its width in pixels */
 
-/* What a row's mark shows, as [from, to, verdict] in s, in order: until the next step of the same bodies, if that
- * comes soon, its verdict; where windows do not overlap, separated before and after the contact. */
+/* What a row's mark shows: [from, to, verdict] in s, in order. The verdict lasts until the next step of the same
+ * bodies, if this comes soon. Where windows do not overlap, the pair is separated before and after the contact. */
 function spansOf(row, mark) {
     const i = row.at[mark], step = steps[i], from = begins[i], like = begins[nextLike[i]] ?? Infinity;
     const to = isReplay && like - from <= recent ? like : begins[i + 1];
@@ -88,7 +88,7 @@ function drawLane(canvas, some, size = sizeOf(canvas)) {
         to.fillRect(Math.round(x(begins[i])) - 1, 0, 3, height);
 }
 
-/* Ticks at round times, below the height y. */
+/* Draws ticks at round times, below the height y. */
 function drawTicks(to, width, y) {
     const span = view.to - view.from, every = Math.max(roundUp(span / (width / 90)), unit ? 0 : 1);
     to.font = "11px system-ui, sans-serif";
@@ -110,7 +110,7 @@ function drawTicks(to, width, y) {
     }
 }
 
-/* All verdicts, above the axis of time; and pauses that are left out. */
+/* Draws all verdicts, the time axis below them, and the pauses that are left out. */
 function drawOverview() {
     drawLane(one("overview"), rows);
     const canvas = one("overview"), to = canvas.getContext("2d"), width = view.width = canvas.clientWidth;
@@ -126,7 +126,7 @@ function drawOverview() {
 
 /* ---- The gap of the chosen pair ---- */
 
-/* [[s, gap, end], ...] of a row, end: until when it holds; then: of the first of two answers. */
+/* [[s, gap, end], ...] of a row: the gap holds from s to end. then: take the first of two answers. */
 function gapsOf(row, then = false) {
     return row.at.flatMap((i, mark) => {
         const gap = (then ? row.pairs[mark][2] : nowOf(row.pairs[mark])).gap;
@@ -148,7 +148,7 @@ function drawGap(row) {
         to.setLineDash(dash);
         to.lineWidth = dash.length ? 1 : 1.6;
         to.beginPath();
-        /* where a gap does not hold until the next one, the line is broken */
+        /* the line is broken where a gap ends before the next one begins */
         points.forEach(([s, gap], k) => to[k === 0 || s - points[k - 1][2] > 1e-9 * wholeSpan ? "moveTo" : "lineTo"](x(s), y(gap)));
         to.stroke();
     };

@@ -26,9 +26,9 @@ const bodyColours = ["#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#ed
 
 /* ---- Poses ---- */
 
-/* The orientation of body k after a part of the window, as fmb_pose_at() has it: on the line from the
- * quaternion at the begin to the one at the end, or to its negative if that is nearer. Quaternions of scenes
- * may have any length. */
+/* The orientation of body k after a part of the window, as fmb_pose_at() computes it: by linear interpolation
+ * from the quaternion at the start to the quaternion at the end, or to its negative if that is nearer.
+ * Quaternions of scenes may have any length. */
 function orientationOf(step, k, part) {
     const { orientation = [1, 0, 0, 0], end } = step.poses[k], ends = [orientation, end?.orientation ?? orientation];
     const largest = Math.max(...ends.flat().map(Math.abs));
@@ -72,7 +72,7 @@ world.add(bodies);
 
 const isDrawn = (body) => typeof body[1] === "number";
 
-/* The solid of shape `index`, its centre, corners of its extent, its size, and further places for its name. */
+/* The solid of shape `index`, its centre, corners of its extent, its size, and further positions for its name. */
 function surfaceOf(index) {
     if (!stage.solids.has(index)) {
         const solid = solidOf(data.shapes[index], stage.exponent), { corners } = solid, box = new THREE.Box3().setFromPoints(corners);
@@ -167,7 +167,7 @@ function setLines(object, points) {
 
 /* ---- Extent ---- */
 
-/* The corners of all bodies of a step, at the begin, the middle and the end of its window. */
+/* The corners of all bodies of a step, at the start, the middle and the end of its window. */
 function cornersOf(step, only = null, huge = Infinity) {
     const out = [];
     step.bodies.forEach((body, k) => {
@@ -179,8 +179,8 @@ function cornersOf(step, only = null, huge = Infinity) {
     return out;
 }
 
-/* The first of the bodies of a step by size that is ten times larger than all smaller ones together, if these have
- * at least half of the frames: its size; Infinity: there is none. */
+/* The size of the smallest body of a step that is more than ten times larger than all smaller bodies together, if
+ * these have at least half of the frames; Infinity: there is none. */
 function hugeSizeOf(step) {
     const box = new THREE.Box3(), sized = step.bodies.flatMap((body, k) => isDrawn(body) ? { k, ...surfaceOf(body[1]) } : []).sort((a, b) => a.size - b.size);
     let frames = -sized.reduce((count, { starts }) => count + starts.length, 0) / 2;
@@ -302,8 +302,8 @@ function stateOf(verdict, [first, last], offset) {
 /* The stronger of two states; one of them may be undefined. */
 const stronger = (a, b) => (a && (!b || a.now > b.now || (a.now === b.now && a.verdict > b.verdict)) ? a : b);
 
-/* Names follow the strongest state of each body. Colours follow that of the pairs whose frames in contact are not
- * told apart (whole), and that of each frame in contact (frames). */
+/* Names show the strongest state of each body. Colours show the strongest state of the pairs whose frames in contact
+ * are not known (whole), and the state of each frame in contact (frames). */
 function statesOf(step, offset) {
     const none = { verdict: 0, now: false }, states = step.bodies.map(() => ({ ...none, whole: none, frames: [] }));
     for (const pair of step.pairs) {
@@ -425,7 +425,7 @@ function beginLabels() {
     stage.labels.forEach((label, n) => Object.assign(label, { n, item: stage.items[n] }));
 }
 
-/* What is in front in each cell of CELL x CELL pixels: the index of the item, or -1, and its depth. */
+/* For each cell of CELL x CELL pixels: the index of the item in front, or -1, and its depth. */
 const CELL = 4;
 function findFront() {
     const columns = Math.ceil(stage.size.width / CELL), rows = Math.ceil(stage.size.height / CELL), { position } = faces.geometry.attributes;
@@ -449,7 +449,8 @@ function findFront() {
     return { columns, items, depths };
 }
 
-/* Whether a name of item n in a rectangle covers nothing in front of the point that it names; isSeen: which is seen. */
+/* Whether the name of item n, in this rectangle, covers nothing in front of the item. isSeen: the item also has to be
+ * visible in the middle of the rectangle. */
 function isInFront({ columns, items, depths }, n, { x, y, w, h }, depth, isSeen) {
     const middle = Math.floor((y + h / 2) / CELL) * columns + Math.floor((x + w / 2) / CELL), own = items[middle] === n ? depths[middle] : depth;
     if (isSeen && items[middle] !== n)
@@ -461,8 +462,8 @@ function isInFront({ columns, items, depths }, n, { x, y, w, h }, depth, isSeen)
     return true;
 }
 
-/* Places the names in the middles of their bodies, those in contact first, or else of frames, or towards a corner; one
- * that would overprint another, or what is in front of its body, is not shown. */
+/* Places each name in the middle of its body, or else of a frame, or else towards a corner. Bodies in contact come
+ * first. A name that would cover another name, or something in front of its body, is not shown. */
 function drawLabels() {
     const { width, height } = stage.size, taken = [];
     const order = [...stage.labels ?? []].sort((a, b) => b.item.state.verdict - a.item.state.verdict);
@@ -484,7 +485,7 @@ function drawLabels() {
 
 /* ---- Axes and scale ---- */
 
-/* The directions of the axes, and a round length in the scene's unit. */
+/* Draws the directions of the axes, and a scale of a round length in the scene's unit. */
 function drawAxes() {
     const perPixel = scaled((camera.right - camera.left) / camera.zoom / stage.size.width, stage.exponent), length = roundUp(40 * perPixel);
     const key = [...camera.matrixWorldInverse.elements, perPixel, stage.colours.ink].join();
@@ -511,7 +512,7 @@ function drawAxes() {
 
 /* ---- The pointer ---- */
 
-/* The nearest point of the faces below a point of the window. */
+/* The nearest point of the faces below the pointer. */
 function hitAt({ clientX, clientY }) {
     const box = one("scene").getBoundingClientRect(), ray = new THREE.Raycaster();
     ray.setFromCamera({ x: (clientX - box.left) / box.width * 2 - 1, y: 1 - (clientY - box.top) / box.height * 2 }, camera);

@@ -134,8 +134,8 @@ function factsOf(answer) {
     return facts;
 }
 
-/* [fact, name, number] of each number of an answer: the fact that shows it rounded. Times are those of its window,
- * since those of the clock are rounded. */
+/* [fact, name, number] of each number of an answer; fact: the line that shows the number rounded. Times count from the
+ * start of the window, since clock times are rounded. */
 function numbersOf(answer) {
     const { contact, box, point, gap } = answer ?? {}, axis = (i, dim) => "xyz"[i % dim];
     const dim = (box?.length ?? 0) / 2, points = ((gap?.length ?? 2) - 3) / 2;
