@@ -1,7 +1,7 @@
-/* Families of turning bodies. Most are made the same way: bodies that turn anyhow are brought
- * together along a direction at one time of the window, where their distance is often least, and
- * then moved apart or into each other a little. Those that rest, slide, hang, lift off, land or
- * graze have whole numbers: nothing rounds. */
+/* Families of turning bodies. Most families draw two bodies with arbitrary turns, move them
+ * together along a direction at one time of the window, when their distance is often least, and
+ * then move them a little apart or into each other. Bodies that rest, slide, hang, lift off, land
+ * or graze have whole numbers, so that nothing rounds. */
 #include "turn_family.h"
 
 #include <float.h>
@@ -27,8 +27,8 @@ static void multiply(int dim, const double *x, const double *y, double *out)
     memcpy(out + 1, dim == 2 ? product + 3 : product + 1, (dim == 2 ? 1 : 3) * sizeof *out);
 }
 
-/* The end of a turn by that angle, of a quaternion so many times as long. Sometimes the negative.
- */
+/* Gives the solid an end that is turned by the angle. The quaternion of the end is ratio times as
+ * long, and sometimes negated. */
 static void turn_by(struct draw *draw, double angle, double ratio, struct solid *solid)
 {
     double axis[3] = {0}, turn[4] = {cos(angle / 2)};
@@ -94,8 +94,8 @@ void turn_point(const struct solid *solid, double share, const double *vertex, d
 
 /* ---- Bringing together ---- */
 
-/* Returns the greatest sign * n . (a point of the body) at a time. point := one where it is
- * attained, or the middle of two; may be NULL. */
+/* Returns the greatest sign * n . (a point of the body) at a time. point := a vertex where it is
+ * attained, or the midpoint of two such vertices; may be NULL. */
 static double farthest(struct draw *draw, const struct solid *solid, double share, const double *n,
                        int sign, double *point)
 {
@@ -133,7 +133,7 @@ static void shift(struct question *question, double by, double more, const doubl
     vector_add(question->b.end_origin, by + more, n);
 }
 
-/* n := a direction from two edges at that time, or any, of unit length. */
+/* n := a unit vector: perpendicular to two edges at that time, or random. */
 static void draw_normal(struct draw *draw, struct question *question, double share, double *n)
 {
     double edge[2][3] = {{0}, {0, 0, 1}}, from[3], to[3], length;
@@ -159,8 +159,9 @@ static void draw_normal(struct draw *draw, struct question *question, double sha
         n[axis] = axis < question->a.dim ? n[axis] / length : 0;
 }
 
-/* B gets an end, if it has none; and at a time of the window the distance along some direction
- * that is given, and, except one time in four, is least or greatest. */
+/* Moves B so that the bodies have the given distance along some direction at some time of the
+ * window. Three times in four, this distance is least or greatest at that time. B gets an end if it
+ * has none. */
 static void bring_together(struct draw *draw, double distance, struct question *question)
 {
     const double share =
@@ -218,7 +219,7 @@ static void begin(struct draw *draw, const struct family *family, const struct c
     }
 }
 
-/* ---- Anyhow ---- */
+/* ---- Arbitrary turns ---- */
 
 /* amount: the largest turn, in degrees. */
 static void anyhow(struct draw *draw, const struct family *family, const struct cell *cell,
@@ -268,7 +269,7 @@ static double draw_little(struct draw *draw)
     return exp2(draw_uniform(draw, -52, -8)) * (draw_coin(draw) ? 1 : -1);
 }
 
-/* amount: so many times as long as thick. */
+/* amount: the ratio of length to thickness. */
 static void thin(struct draw *draw, const struct family *family, const struct cell *cell,
                  struct question *out)
 {
@@ -295,7 +296,7 @@ static void rows(struct draw *draw, const struct family *family, const struct ce
     bring_together(draw, draw_little(draw), out);
 }
 
-/* amount: of vertices. */
+/* amount: the largest number of vertices. */
 static void clouds(struct draw *draw, const struct family *family, const struct cell *cell,
                    struct question *out)
 {
@@ -316,13 +317,13 @@ static void round_ones(struct draw *draw, const struct family *family, const str
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
         solid->radius = draw_int(draw, 0, 3) == 0 ? 0 : draw_uniform(draw, 0, 1);
-        if (solid->shape == FMB_HULL) /* balls and capsules among them */
+        if (solid->shape == FMB_HULL) /* balls and capsules are included */
             solid->vertex_count = draw_int(draw, 1, 3);
     }
     bring_together(draw, draw_little(draw), out);
 }
 
-/* amount: exponents up to that. */
+/* amount: the largest exponent. */
 static void sizes(struct draw *draw, const struct family *family, const struct cell *cell,
                   struct question *out)
 {
@@ -349,7 +350,7 @@ static void sizes(struct draw *draw, const struct family *family, const struct c
 
 /* ---- Whole numbers ---- */
 
-/* A turn of a whole quaternion that is legal. */
+/* Draws a valid turn between two quaternions of whole numbers. */
 static void draw_whole_turn(struct draw *draw, int most, struct solid *solid)
 {
     double dot, norm[2];
@@ -375,7 +376,7 @@ static void nudge(struct draw *draw, struct question *out)
         *one += (draw_coin(draw) ? 1 : -1) * ldexp(1, -draw_int(draw, 20, 44));
 }
 
-/* amount: the largest number; features.one: 1: one of them is a little more or less. */
+/* amount: the largest number; features.one 1: one number is changed a little. */
 static void whole(struct draw *draw, const struct family *family, const struct cell *cell,
                   struct question *out)
 {
@@ -404,7 +405,8 @@ static void whole(struct draw *draw, const struct family *family, const struct c
         nudge(draw, out);
 }
 
-/* The same half turn about an axis for both, and the same way: nothing rounds. */
+/* Turns both bodies by the same half turn about an axis, or not at all, and moves both by the same
+ * vector. Nothing rounds. */
 static void carry(struct draw *draw, struct question *out)
 {
     const int about = draw_int(draw, 0, 3);
@@ -428,7 +430,8 @@ static void carry(struct draw *draw, struct question *out)
     }
 }
 
-/* A box with its lowest face at z = 0, whatever its yaw. */
+/* Draws a solid with its lowest face at z = 0, whatever its yaw: a box, or one time in four a hull
+ * or a tetrahedron. */
 static void draw_standing(struct draw *draw, struct solid *solid)
 {
     *solid = (struct solid){.dim = 3, .shape = FMB_BOX, .ending = true, .orientation_count = 4};
@@ -455,8 +458,8 @@ static void draw_standing(struct draw *draw, struct solid *solid)
         memcpy(solid->orientation, (double[4]){5, 0, 0, 1}, sizeof solid->orientation);
 }
 
-/* A table, or one that yaws too. amount: so far above it, in units of 2^-40; features.one 1: lifts
- * off, 2: lands. */
+/* A solid on a table; the table may yaw too. amount: the height above the table, in units of 2^-40;
+ * features.one 1: the solid lifts off, 2: it lands. */
 static void on_table(struct draw *draw, const struct family *family, const struct cell *cell,
                      struct question *out)
 {
@@ -486,7 +489,8 @@ static void on_table(struct draw *draw, const struct family *family, const struc
     carry(draw, out);
 }
 
-/* A box that turns about one of its edges, which stays on the table, or on the edge of a frame. */
+/* A box that turns about one of its edges. This edge stays on a table or on the edge of a door
+ * frame. */
 static void on_edge(struct draw *draw, const struct family *family, const struct cell *cell,
                     struct question *out)
 {
@@ -516,7 +520,7 @@ static void on_edge(struct draw *draw, const struct family *family, const struct
     carry(draw, out);
 }
 
-/* Two bodies of one motion, side by side in body coordinates. */
+/* Two bodies with the same motion, side by side in body coordinates. */
 static void carried(struct draw *draw, const struct family *family, const struct cell *cell,
                     struct question *out)
 {
@@ -545,8 +549,8 @@ static void carried(struct draw *draw, const struct family *family, const struct
     out->b.ending = true;
 }
 
-/* A rod whose corner, by 3-4-5, grazes a ceiling in passing; or one whose half diagonal is no
- * whole number. The ceiling an ulp lower or higher, too. */
+/* A rod whose corner grazes a ceiling in passing. Half its diagonal is 5/2, by 3-4-5, or
+ * irrational. The ceiling may be an ulp lower or higher. */
 static void graze(struct draw *draw, const struct family *family, const struct cell *cell,
                   struct question *out)
 {
@@ -567,7 +571,7 @@ static void graze(struct draw *draw, const struct family *family, const struct c
                             .orientation = {draw_int(draw, 3, 5)},
                             .end_orientation = {4, 0, 0, draw_int(draw, 3, 4)}};
     out->a.origin[1] = height + draw_int(draw, -1, 1) * (whole ? 0x1p-51 : 0x1p-53);
-    if (draw_coin(draw)) { /* both turn, about the same axis across: the ceiling stays level */
+    if (draw_coin(draw)) { /* the ceiling turns about its normal, so that it stays level */
         out->a.ending = true;
         out->a.orientation_count = 4;
         memcpy(out->a.end_origin, out->a.origin, sizeof out->a.origin);
@@ -597,7 +601,7 @@ static void flat(struct draw *draw, const struct family *family, const struct ce
     }
     if (draw_coin(draw) || cell->dim == 2)
         return;
-    for (int side = 0; side < 2; side++) { /* in one plane all the time, but for the way */
+    for (int side = 0; side < 2; side++) { /* in one plane, except that B may move across it */
         struct solid *solid = question_solid(out, side);
         for (int i = 0; i < 3; i++)
             solid->component[i][2] = 0;
@@ -627,7 +631,7 @@ static void flat_near(struct draw *draw, const struct family *family, const stru
     bring_together(draw, draw_coin(draw) ? 0 : draw_little(draw), out);
 }
 
-/* An end that is that of a velocity. */
+/* Ends that do not turn: a velocity gives the same motion. */
 static void straight(struct draw *draw, const struct family *family, const struct cell *cell,
                      struct question *out)
 {
@@ -663,16 +667,16 @@ static const struct family families[] = {
     {"turn-lift", "lifts off a table", on_table, .features = {1, 0, false}, .cells = FAMILY_3D},
     {"turn-land", "lands on a table", on_table, .features = {2, 0, false}, .cells = FAMILY_3D},
     {"turn-tumble", "tumbles over an edge on a table", on_edge, .cells = FAMILY_3D, .verdict = FMB_TOUCHING},
-    {"turn-tumble-near", "the same, 2^-40 above, below or neither", on_edge, .amount = 1, .cells = FAMILY_3D},
+    {"turn-tumble-near", "the same, 2^-40 above or below, or exactly", on_edge, .amount = 1, .cells = FAMILY_3D},
     {"turn-door", "a door in its frame", on_edge, .features = {1, 0, false}, .cells = FAMILY_3D},
-    {"turn-door-near", "the same, 2^-40 off", on_edge, .amount = 1, .features = {1, 0, false}, .cells = FAMILY_3D},
-    {"turn-carried", "two bodies of one motion, 2^-40 apart, into each other or neither", carried, .amount = 1},
-    {"turn-whole-1", "quaternions of numbers up to 1", whole, .amount = 1},
-    {"turn-whole-5", "quaternions of numbers up to 5", whole, .amount = 5},
-    {"turn-whole-off", "the same, a number a little off", whole, .amount = 3, .features = {1, 0, false}},
-    {"turn-graze", "grazes a ceiling in passing, or by an ulp", graze, .cells = FAMILY_3D},
+    {"turn-door-near", "the same, offset by 2^-40 or not at all", on_edge, .amount = 1, .features = {1, 0, false}, .cells = FAMILY_3D},
+    {"turn-carried", "two bodies with the same motion, offset by 2^-40 or not at all", carried, .amount = 1},
+    {"turn-whole-1", "quaternions of whole numbers up to 1", whole, .amount = 1},
+    {"turn-whole-5", "quaternions of whole numbers up to 5", whole, .amount = 5},
+    {"turn-whole-off", "whole numbers up to 3, one of them changed a little", whole, .amount = 3, .features = {1, 0, false}},
+    {"turn-graze", "grazes a ceiling in passing, exactly or within an ulp", graze, .cells = FAMILY_3D},
     {"turn-flat", "plates, segments and points of whole numbers, in one plane or not", flat, .amount = 3},
-    {"turn-flat-near", "the same of any numbers, touching or nearly", flat_near},
+    {"turn-flat-near", "the same with any numbers, touching or nearly touching", flat_near},
     {"turn-straight", "ends that do not turn", straight, .amount = 3},
     {"turn-thin-1e3", "plates and needles, aspect 1e3", thin, .amount = 1e3},
     {"turn-thin-1e9", "plates and needles, aspect 1e9", thin, .amount = 1e9},

@@ -1,7 +1,7 @@
-/* The campaign of turning bodies: families of pairs, decided by the methods that are never wrong,
- * and held against the oracle, which shares no code with the engine. What the oracle leaves open,
- * of rounded shapes and of hulls of many vertices, is held against the static oracle at some times.
- */
+/* The campaign of turning bodies. It decides families of pairs by the default method and compares
+ * the answers with the oracle, which shares no code with the engine. It also compares them with the
+ * static oracle at some times, because the oracle leaves rounded shapes and hulls of many vertices
+ * open. */
 #include <errno.h>
 #include <float.h>
 #include <inttypes.h>
@@ -37,17 +37,17 @@ static void help(void)
     printf(
         "usage: turning [OPTIONS]\n"
         "\n"
-        "Draws pairs of bodies of which at least one turns within the window, and counts what\n"
-        "the engine gets wrong, by an oracle that shares no code with it.\n"
+        "Draws pairs in which at least one body turns within the window, and counts the wrong\n"
+        "answers of the engine. The oracle shares no code with the engine.\n"
         "\n"
-        "  --pairs N      of each family, in 3D and in 2D (%ld)\n"
-        "  --family NAME  this family, or those whose names begin so up to a dash; may be\n"
-        "                 repeated (all)\n"
-        "  --seed S       what to draw from\n"
+        "  --pairs N      pairs of each family, in 3D and in 2D (%ld)\n"
+        "  --family NAME  this family; if NAME ends with a dash, all families whose names begin\n"
+        "                 with it; may be repeated (all)\n"
+        "  --seed S       seed of the random numbers\n"
         "  --workers N    threads (one a processor); the counts do not depend on it\n"
         "  --help\n"
         "\n"
-        "Exit codes: 0 nothing was wrong, 1 an answer was, 2 wrong usage.\n"
+        "Exit codes: 0 no answer was wrong, 1 an answer was wrong, 2 wrong usage.\n"
         "\n"
         "Families:\n",
         usual_pairs);
@@ -55,15 +55,15 @@ static void help(void)
         printf("  %-20s  %s\n", family_turning_at(i)->name, family_turning_at(i)->summary);
 }
 
-/* What is counted of a family in one dimension. */
+/* The counts of a family in one dimension. */
 struct count {
     const struct family *family;
     struct cell cell;
     long pairs, truth[FMB_OVERLAPPING + 1], open, undecided, wrong;
     long lacking;                  /* decided, without gap or box */
-    double contact_most, gap_most; /* how far out an end is, and the width, of what is promised */
+    double contact_most, gap_most; /* largest error of an end, and width, over the promised bound */
     double seconds[2];             /* of the engine, of the oracle */
-    struct question question;      /* the first that was wrong */
+    struct question question;      /* the first with a wrong answer */
     char why[WHY];
 };
 
@@ -87,7 +87,7 @@ static void share_of(double time, double duration, mpq_t out)
     mpq_clear(window);
 }
 
-/* The largest coordinate at nine times, or an upper bound of that of the window. */
+/* The largest coordinate at nine times; if upper, an upper bound of it over the window. */
 static double size_of(const struct pair *pair, bool upper)
 {
     struct pair moment = *pair;
@@ -114,8 +114,8 @@ static double size_of(const struct pair *pair, bool upper)
     return reach;
 }
 
-/* The sign of the gap of the bodies at a time minus the bound, but for 1e-14 of it where they are
- * apart. */
+/* The sign of the gap of the bodies at a time minus the bound. Where the bodies are apart, a
+ * relative difference up to 1e-14 counts as 0. */
 static int compare_gap(const struct pair *moment, double bound)
 {
     int least = 1;
@@ -158,7 +158,8 @@ static double gap_of_moment(const struct trial *trial, double share)
                : HUGE_VAL;
 }
 
-/* The time of the least of five gaps, again and again closer about it. */
+/* Narrows the interval around the least of five gaps until its length is at most 2^-48. Returns the
+ * time of the least gap. */
 static double close_in(const struct trial *trial, double from, double to)
 {
     double found = from;
@@ -176,8 +177,8 @@ static double close_in(const struct trial *trial, double from, double to)
     return found;
 }
 
-/* Where to look: the time of the least gap within a part of the window, by static answers of the
- * engine at rounded poses. It need not be right. */
+/* Estimates the time of the least gap within a part of the window, from static answers of the
+ * engine at rounded poses. The estimate need not be right: it only chooses a time to check. */
 static double seek_least(const struct trial *trial, double from, double to)
 {
     enum { STEPS = 128 };
@@ -197,7 +198,7 @@ static double seek_least(const struct trial *trial, double from, double to)
     return best;
 }
 
-/* Whether both bodies have, within the limit, that point at its time. */
+/* Whether the point is within the limit of both bodies at its time. */
 static bool is_common(const struct pair *pair, const double point[1 + FMB_DIM_MAX], double limit)
 {
     struct pair moment = *pair;
@@ -229,9 +230,8 @@ static bool is_common(const struct pair *pair, const double point[1 + FMB_DIM_MA
     return least <= limit;
 }
 
-/* Returns what is wrong with a contact, or NULL. most := how far out an end is, of what is
- * promised.
- */
+/* Returns the fault of a contact, or NULL. Raises *most to the largest error of an end, over the
+ * promised bound. */
 static const char *contact_fault(const struct pair *pair, struct turning_truth *truth,
                                  const double contact[2], double *most)
 {
@@ -239,7 +239,7 @@ static const char *contact_fault(const struct pair *pair, struct turning_truth *
     const char *fault = NULL;
     mpq_t time, out;
     if (!(contact[0] >= 0 && contact[0] <= contact[1] && contact[1] <= T))
-        return "a contact that is no part of the window";
+        return "the contact is not within the window";
     mpq_inits(time, out, NULL);
     for (int end = 0; end < 2 && !fault; end++) {
         mpq_t *const far = end == 0 ? &truth->first[0] : &truth->last[1];
@@ -261,7 +261,7 @@ static const char *contact_fault(const struct pair *pair, struct turning_truth *
     return fault;
 }
 
-/* The same for a gap. */
+/* Returns the fault of a gap, or NULL. Raises *most to its width, over the promised bound. */
 static const char *gap_fault(const struct pair *pair, enum fmb_verdict verdict,
                              const struct fmb_gap *gap, double *most)
 {
@@ -271,7 +271,7 @@ static const char *gap_fault(const struct pair *pair, enum fmb_verdict verdict,
     if (!(gap->bounds[0] <= gap->bounds[1]) || !(gap->time >= 0 && gap->time <= pair->duration))
         return "gap: bounds or time";
     if (verdict == FMB_TOUCHING && (gap->bounds[0] != 0 || gap->bounds[1] != 0))
-        return "gap: of a touching pair not 0";
+        return "gap: not 0 for a touching pair";
     const double limit = 1e-12 * size_of(pair, false) + 32 * 0x1p-1074;
     const double relative =
         (fmin(gap->bounds[1], DBL_MAX) - fmax(gap->bounds[0], -DBL_MAX)) / limit;
@@ -311,7 +311,7 @@ static const char *box_fault(const struct pair *moment, const double box[2][FMB_
     return fault;
 }
 
-/* Holds the answer against the static oracle at some times. */
+/* Compares the answer with the static oracle at some times. */
 static const char *look(struct draw *draw, const struct trial *trial,
                         const struct fmb_answer *answer, struct turning_truth *truth)
 {
@@ -322,7 +322,7 @@ static const char *look(struct draw *draw, const struct trial *trial,
                          : deep ? seek_least(trial, answer->contact[0] / T, answer->contact[1] / T)
                                 : seek_least(trial, 0, 1);
     struct pair moment = *pair;
-    /* The static oracle samples the facets of these: the depth is not certain. */
+    /* The static oracle samples the facets of large hulls, so that their depth is not certain. */
     const bool large = fmb_body_frame(pair->a.body, 0)->vertex_count > 20 ||
                        fmb_body_frame(pair->b.body, 0)->vertex_count > 20;
     const char *fault = NULL;
@@ -358,7 +358,7 @@ static const char *look(struct draw *draw, const struct trial *trial,
         if (answer->has_gap && !fault && !(large && verdict == FMB_OVERLAPPING) &&
             compare_gap(&moment, answer->gap.bounds[0]) < 0 && answer->verdict != FMB_TOUCHING)
             fault = "a smaller gap at some time";
-        /* The time is rounded: up to the limit. */
+        /* The time is rounded, so that the depth may be less by 1e-12 of the size. */
         if (deep && i == 6 && !large && !fault &&
             compare_gap(&moment, answer->gap.bounds[1] + 1e-12 * size_of(pair, true)) > 0)
             fault = "gap: they are not as deep at its time";
@@ -385,7 +385,7 @@ static const char *answer_fault(struct draw *draw, struct count *count, const st
     if (has_nan(answer->contact, 2) || has_nan(answer->point, 1 + FMB_DIM_MAX) ||
         has_nan(gap->bounds, 2) || has_nan(gap->direction, FMB_DIM_MAX) ||
         has_nan(gap->witness[0], 2 * FMB_DIM_MAX) || isnan(gap->time))
-        return "what is not a number";
+        return "a number is NaN";
     const char *fault = look(draw, trial, answer, truth);
     if (fault)
         return fault;
@@ -395,7 +395,7 @@ static const char *answer_fault(struct draw *draw, struct count *count, const st
         return "the verdict is too strong";
     if (answer->has_contact != (answer->verdict != FMB_SEPARATED) ||
         answer->has_point != answer->has_contact || (answer->has_box && !answer->has_contact))
-        return "a part is missing, or is too much";
+        return "a part is missing or unexpected";
     count->lacking += !answer->has_gap || answer->has_box != answer->has_contact ||
                       (answer->has_box && has_nan(answer->box[0], pair->a.body->dim));
     if (answer->has_contact &&
@@ -410,7 +410,7 @@ static const char *answer_fault(struct draw *draw, struct count *count, const st
     return NULL;
 }
 
-/* ---- The same question, asked in other ways ---- */
+/* ---- Equivalent questions ---- */
 
 static struct reply ask(const struct question *question)
 {
@@ -421,7 +421,7 @@ static struct reply ask(const struct question *question)
     return reply;
 }
 
-/* Half a turn of the world about its first axis, in 2D about the origin: nothing rounds. */
+/* Turns the world by 180 degrees about its first axis, in 2D about the origin. Nothing rounds. */
 static void turn_world(struct solid *solid)
 {
     const int dim = solid->dim;
@@ -443,7 +443,7 @@ static void turn_world(struct solid *solid)
         memset(solid->end_orientation, 0, sizeof solid->end_orientation);
 }
 
-/* out := (x + sign y) * scale. Returns whether nothing rounds. */
+/* out := (x + y) * scale. Returns whether nothing rounds. */
 static bool halve(double x, double y, double scale, double *out)
 {
     const double sum = x + y;
@@ -451,7 +451,7 @@ static bool halve(double x, double y, double scale, double *out)
     return sum - x == y && sum - y == x && *out / scale == sum;
 }
 
-/* The first or the second half of the window. Returns whether nothing rounds. */
+/* Keeps the first or the second half of the window. Returns whether nothing rounds. */
 static bool take_half(int which, struct solid *solid)
 {
     double dot = 0, middle[2][4] = {{0}};
@@ -471,8 +471,7 @@ static bool take_half(int which, struct solid *solid)
     return exact;
 }
 
-/* Gives an end that does not turn as a velocity. Returns whether it turns not, and nothing rounds.
- */
+/* Replaces an end by a velocity. Returns whether the end does not turn and nothing rounds. */
 static bool take_velocity(double duration, struct solid *solid)
 {
     bool exact = true;
@@ -511,7 +510,7 @@ static const char *other_ways_fault(const struct question *question,
             (answer->has_contact &&
              !(fabs(reply.answer.contact[0] - answer->contact[0]) <= close / 2 &&
                fabs(reply.answer.contact[1] - answer->contact[1]) <= close / 2)))
-            return "another verdict or contact of the same velocity";
+            return "another verdict or contact as a velocity";
     }
     enum fmb_verdict strongest = FMB_SEPARATED;
     bool decided = T / 2 * 2 == T;
@@ -564,7 +563,7 @@ static void judge(struct count *count, struct draw *draw, const struct question 
     count->truth[truth.least] += known;
     count->open += !known;
     if (known && count->family->verdict && (int) truth.least != count->family->verdict)
-        fault = "not what the family is made for";
+        fault = "not the verdict of the family";
     else if ((fault = order_fault(question, reply)))
         ;
     else if (reply[0].status != FMB_OK && reply[0].status != FMB_CANNOT_DECIDE)
@@ -590,7 +589,7 @@ static void judge(struct count *count, struct draw *draw, const struct question 
     trial_end(&trial);
 }
 
-/* ---- The whole ---- */
+/* ---- The campaign ---- */
 
 struct campaign {
     const struct options *options;
@@ -647,13 +646,12 @@ int main(int argc, char **argv)
          i++)
         add(&campaign, options.families ? options.family[i] : family_turning_at(i));
     workers_do("turning", options.workers, campaign.counts, run, &campaign);
-    printf(
-        "seed %" PRIu64
-        "; contact and gap: the widest, of what is promised; times: of a verdict with contact, us, "
-        "of the oracle, ms\n"
-        "%-20s    %6s %6s %6s %6s %5s | %5s %6s %6s %8s %8s | %8s %8s\n",
-        options.seed, "", "pairs", "apart", "touch", "over", "open", "wrong", "undec.", "lacks",
-        "contact", "gap", "engine", "oracle");
+    printf("seed %" PRIu64
+           "; contact and gap: largest error and width, over the promised bounds; times: us of a "
+           "verdict with contact, ms of the oracle\n"
+           "%-20s    %6s %6s %6s %6s %5s | %5s %6s %6s %8s %8s | %8s %8s\n",
+           options.seed, "", "pairs", "apart", "touch", "over", "open", "wrong", "undec.", "lacks",
+           "contact", "gap", "engine", "oracle");
     for (size_t i = 0; i < campaign.counts; i++) {
         print_count(&campaign.count[i]);
         wrong += campaign.count[i].wrong;

@@ -121,8 +121,8 @@ included() {
             END { while ((getline file < sources) > 0) visit(file) }' | sort -u
 }
 
-# suffices DEPS: makes each target that is listed after it. Where several targets are one script, one of them is made.
-# A release needs a section with a date in the page of changes (system/library.bats), and builds what 'deb' builds.
+# suffices DEPS: makes each target that is listed after it. Of several targets that run one script, it makes one.
+# It makes no release, which needs a dated section in the change log (system/library.bats) and builds what 'deb' builds.
 suffices() {
     local target
     [ "$(packages_of "$1")" ]
@@ -192,8 +192,8 @@ make_netns() {
     [ -x "$BATS_TEST_TMPDIR/b/netns" ]
 }
 
-@test "what is linked has the same bytes in every folder, locale and time zone, and for every umask" {
-    # A program of one file, and an object that the linker optimises again, or does not.
+@test "linked files have the same bytes in every folder, locale and time zone, and for every umask" {
+    # A program of one file, and a shared object with and without link-time optimisation.
     local number=0 folder
     for folder in short "a longer & path"; do
         mkdir "$BATS_TEST_TMPDIR/$folder"

@@ -75,7 +75,7 @@ setup() {
     [[ $output == *"struct question question = {"* ]] # a reproducer
 }
 
-@test "turning: no answer about turning bodies is wrong; those that rest, slide, hang, land or lift off are decided" {
+@test "turning: no answer about turning bodies is wrong; bodies that rest, slide, hang, land or lift off are decided" {
     run "$BUILD/turning" --pairs 5
     ended 0
     [[ ${lines[-1]} == *", 0 wrong, "* ]]
@@ -93,7 +93,7 @@ setup() {
     done
     run "$BUILD/turning" --help
     ended 0
-    run "$BUILD/turning" --family random # not one of bodies that turn
+    run "$BUILD/turning" --family random # a family without turning bodies
     ended 2
 }
 

@@ -54,7 +54,7 @@ SCENE
   {"id": 4, "position": [9,0,0], "velocity": [0,1,0], "frames": [{"shape": "sphere", "radius": 0.25, "position": [0,0,1]},
     {"shape": "tetrahedron", "radius": 0.25, "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}]}]}
 SCENE
-    # Twice: a hand of two fingers, one of which meets a post; far above a large ground.
+    # Two equal scenes: a hand has two fingers, and one of them meets a post, far above a large ground.
     hand='{"dim": 3, "duration": 2, "bodies": [
       {"id": 1, "name": "hand", "frames": [{"shape": "box", "size": [1,1,1]}, {"shape": "box", "position": [3,0,0], "size": [1,1,1]}]},
       {"id": 2, "name": "post", "shape": "box", "size": [0.5,0.5,0.5], "position": [3,3,0], "velocity": [0,-2,0]},
@@ -71,7 +71,7 @@ SCENE
   {"id": 1, "shape": "box", "size": [1,1], "orientation": [2,1], "velocity": [0.5,0]},
   {"id": 2, "shape": "tetrahedron", "position": [1,0], "origin": [0,0], "components": [[1,0],[0,1]]}]}
 SCENE
-    # Ends: a quaternion whose negative is nearer, of another length, and a position alone.
+    # Ends: a quaternion of another length, whose negative is nearer, and a position without an orientation.
     "$fmb" query --local --html ends.html > ends.said 2>&1 << 'SCENE' || true
 {"dim": 3, "duration": 2, "bodies": [
   {"id": 1, "shape": "box", "size": [2,1,1], "orientation": [3,0,0,4], "end": {"position": [0,0,4], "orientation": [-8,0,0,-1]}},
@@ -179,13 +179,13 @@ setup() {
         == ([[1, 2, 3], [1, 2, 3], [2, 1, 3], [1, 2, 3], [2, 1, 3]] | map(., .))'
 }
 
-@test "frames in contact are red, the others of their bodies not" {
+@test "frames in contact are red, the other frames of their bodies are not" {
     data frames.html | jq -e '[.steps[].pairs[].frame_contacts | select(.)] == [[[1,0,3,1.125,1.875]], [[1,0,3,1.125,1.875]]]' > /dev/null
     found '.frames.times | map(.fingers | map(.red > 100)) == [[false, false], [false, true], [false, false], [false, true]]' \
         '.frames.times[0] | .red == 0 and all(.fingers[]; .drawn == 144)'
 }
 
-@test "contacts have the times of the clock" {
+@test "contacts are given in clock time" {
     found '.frames.times | map(.moment.text[:7]) == ["0.000 s", "1.250 s", "2.000 s", "3.250 s"]' \
         '[.frames.times[].table[0]] == ([range(2) | "hand – post | overlapping | 1.125 to 1.875 s"] + [range(2) | "hand – post | overlapping | 3.125 to 3.875 s"])' \
         '.frames.next.text == "3.125 s · step 2 of 2"'
@@ -196,7 +196,7 @@ setup() {
 }
 
 # Without the ground, which is 283 long, the scene is about 8 long.
-@test "a body that is ten times larger than all others does not decide what is in view" {
+@test "a body ten times larger than all others does not determine the view" {
     found '.frames.radius | . > 3 and . < 6'
 }
 
@@ -267,7 +267,7 @@ setup() {
 }
 
 # In the middle, q = (3,0,0,4) + (8,0,0,1) = (11,0,0,5), which turns the axis x to (121 - 25, 2 * 11 * 5) / 146.
-@test "a body that turns is drawn where fmb_pose_at() has it" {
+@test "a turning body is drawn in the pose of fmb_pose_at()" {
     data ends.html | jq -e '.steps[0].bodies | map(.end) == [{position: [0,0,4], orientation: [-8,0,0,-1]}, {position: [5,2,0]}]' > /dev/null
     found '.ends | length == 3 and .[1].text == "1.000 s" and map(.places) == [[[0, 0, 0], [5, 0, 0]], [[0, 0, 2], [5, 1, 0]], [[0, 0, 4], [5, 2, 0]]]' \
         '.ends | map(.turn) == [[-0.28, 0.96], [0.658, 0.753], [0.969, 0.246]]'
@@ -296,7 +296,7 @@ setup() {
     found '.restored.drawn == .opened.drawn and .restored.yellow == .opened.yellow'
 }
 
-@test "labels overprint neither each other nor what is in front of their bodies" {
+@test "labels overprint neither each other nor bodies in front of their own" {
     found '.arm.misplaced == [] and .many.misplaced == [] and .many.labels > 10 and .narrow.misplaced == [] and all(.frames.times[]; .misplaced == [])'
     found '.arm.overprints == [0, 0, 0, 0, 0] and .crowd.overprints == 0 and .narrow.overprints == 0'
 }

@@ -631,7 +631,7 @@ squares() {
     ended 0
 }
 
-@test "bodies that turn have certificates, which hold, unless they touch" {
+@test "turning bodies that do not touch have certificates, which hold" {
     door='{"dim": 3, "bodies": [{"id": 1, "shape": "box", "size": [1,1,1], "orientation": [1,0,0,0], "end": {"orientation": [1,1,0,0]}},
         {"id": 2, "shape": "box", "size": [1,1,1], "position": [1,0,0]}, {"id": 3, "shape": "box", "size": [1,1,1], "position": [0,1.125,0]},
         {"id": 4, "shape": "box", "size": [1,1,1], "position": [-2,0,0]}], "pairs": [[1,2], [1,3], [1,4]]}'
@@ -789,7 +789,7 @@ refused() {
     [[ $output == *touching* ]]
 }
 
-@test "a body has an end in a window only, in place of a velocity; orientations of different lengths are reported once" {
+@test "a body has an end only in a window, and in place of a velocity; orientations of different lengths are reported once" {
     ending='{"dim": 3, "duration": 2, "bodies": [{"id": 1, "shape": "sphere", "radius": 1}, {"id": 7, "shape": "box", "size": [1,1,1], "position": [9,0,0],
         "end": {"orientation": [2,0,0,2]}}, {"id": 8, "shape": "box", "size": [1,1,1], "position": [0,9,0], "end": {"orientation": [2,0,0,0]}}]}'
     for scenes in "$ending" "$ending $ending"; do

@@ -714,7 +714,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 }
 
 # Scenes are queries 0, 3, 6 and so on.
-@test "the label of a scene is named where it differs, and is a JUnit case" {
+@test "a scene that differs is named by its label, which is a JUnit case" {
     edit --label 3 'home <&"> ]]>' --label 6 shelf --label 9 shelf --label 12 $'a\nb' \
         --flip 3 --flip 9 --flip 15 --drop 6 arm.log
     run "$FMB" replay spoiled.log
@@ -735,7 +735,7 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     [ "$(xpath 'count(//testcase[starts-with(@name, "a")]/*)')" = 1 ]
     [[ $(xpath '//testsuite[1]/testcase[@name="FMB_SCENE_QUERY"]/system-out') == 'queries: 20, same: 19, different: 1, '* ]]
     [[ $(xpath '//testsuite[1]/testcase[@name="FMB_PAIR_QUERY"]/system-out') == 'queries: 48, same: 48, '* ]]
-    # Those of the other log have no label.
+    # The scenes of the other log have no label.
     [ "$(xpath '//testsuite[2]/@tests')" = 3 ]
 }
 

@@ -517,7 +517,7 @@ fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): -inf is outside its limits, 
     is 1.25
     positions --joints turn=-0.5,slide=0.5
     is 0.5
-    # Its limits do not bind it, unless it is given.
+    # A mimic joint may exceed its limits, unless its value is given.
     positions --joints turn=0.75
     is 1.25
     [[ $stderr == *"or of mimic joints: 1, the farthest -1.25 of 'slide'"* ]]
@@ -617,7 +617,7 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     refused 't.csv: line 3: body 9: not a finite number' robot.urdf --with world.json --joints-csv t.csv
 }
 
-@test "a world whose bodies have an end keeps it, in its own window" {
+@test "a world keeps the ends of its bodies, in its own window" {
     body='{"id": 9, "shape": "box", "size": [1,1,1], "orientation": [1,0,0,0], "end": {"position": [0,0,1], "orientation": [1,0,0,0.5]}}'
     echo "{\"dim\": 3, \"duration\": 2, \"bodies\": [$body]}" > world.json
     scene robot.urdf --with world.json

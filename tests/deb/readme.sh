@@ -1,7 +1,7 @@
 #!/bin/sh
 # readme.sh SUITE: follows the README on a bare Debian, bookworm or trixie, as a user with sudo: builds, installs
-# below a prefix, and proves a path of a robot that is not the demo's. Run by hand, as root, where debootstrap and a
-# mirror of Debian are (MIRROR=). The system is made in build/readme, which is removed at the end.
+# below a prefix, and proves a path of another robot than the demo's. Run it by hand, as root; it needs debootstrap
+# and a Debian mirror (MIRROR=). It makes the system in build/readme, and removes this folder at the end.
 set -eu
 
 case ${1-} in
@@ -32,7 +32,7 @@ echo 'user ALL=(ALL) NOPASSWD: ALL' > "$root/etc/sudoers.d/user"
 mkdir "$root/home/user/fmb"
 tar --exclude=./build --exclude=./.git -c . | tar -x -C "$root/home/user/fmb"
 
-# A lift with a boom that swings, in a hall. One path passes over a pillar, and one through it.
+# A lift with a boom that swings, in a hall. One path passes over a pillar, the other one through it.
 mkdir "$root/home/user/lift"
 cat > "$root/home/user/lift/lift.urdf" << 'END'
 <robot name="lift">

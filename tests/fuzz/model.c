@@ -194,7 +194,7 @@ static bool good_orientation(const struct query_placement *placement)
     return most > 0 && !(most > least * 0x1p200);
 }
 
-/* Right angles and lengths are exact, so they are the engine's. */
+/* Right angles and lengths need exact arithmetic, so the engine checks them. */
 static bool good_end(const struct query_placement *placement, double duration)
 {
     struct fmb_placement placed = placement->placed;

@@ -71,7 +71,7 @@ static struct results_gap gap_of(const fmb_msgs_scene_result_t *message, int32_t
                                 message->num_gap_frames ? message->gap_frames + 2 * i : NULL};
 }
 
-/* Neither near nor a contact, or not decided. */
+/* Whether a pair is neither near nor a contact, or is not decided. */
 static bool is_far(const fmb_msgs_scene_result_t *message, int32_t i)
 {
     const int32_t dim = dim_of_gaps(message);
@@ -102,7 +102,7 @@ static bool are_gaps(const fmb_msgs_scene_result_t *message)
     return good;
 }
 
-/* Contacts, near pairs, where the gaps have been checked, and those not decided. */
+/* Whether all named pairs are contacts, near or not decided. The gaps have been checked. */
 static bool are_named(const fmb_msgs_scene_result_t *message)
 {
     bool good = true;

@@ -11,8 +11,8 @@
 struct pair {
     struct fmb_placement a, b;
     double duration; /* seconds */
-    /* Read by the oracle only. Not NULL: both bodies at rest where they are at this time, as a
-     * share of the window. NULL: the window; there are no ends. */
+    /* Read by the oracle only. Not NULL: both bodies rest in their poses at this time, a share of
+     * the window. NULL: the whole window; no body has an end. */
     mpq_srcptr at;
 };
 

@@ -94,8 +94,8 @@ int polynomial_sign(const struct polynomial *p, const mpz_t i, unsigned k)
     return sign;
 }
 
-/* About the middle m, with h = 2^-(k + 1): |p(m)| > sum |p_j| h^j, p_j the other coefficients of
- * p(m + x). */
+/* The sign is certain if |p(m)| > sum |p_j| h^j over j >= 1. Here m is the midpoint,
+ * h = 2^-(k + 1), and p_j are the coefficients of p(m + x). */
 int polynomial_sign_over(const struct polynomial *p, const mpz_t i, unsigned k)
 {
     mpz_t c[DEGREE_MAX + 1], middle;
@@ -133,7 +133,7 @@ static void make_primitive(struct polynomial *p)
     mpz_clear(content);
 }
 
-/* x := the remainder of x by y times a positive number. */
+/* x := a positive multiple of the remainder of x divided by y. */
 static void reduce(struct polynomial *x, const struct polynomial *y)
 {
     mpz_t lead, factor;

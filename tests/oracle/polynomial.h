@@ -16,7 +16,7 @@ void polynomial_init(struct polynomial *p); /* 0 */
 void polynomial_clear(struct polynomial *p);
 void polynomial_set(struct polynomial *p, const struct polynomial *x);
 
-/* p := x + s (y - x), of constants. */
+/* p := x + s (y - x), for constants x and y. */
 void polynomial_set_line(struct polynomial *p, const mpz_t x, const mpz_t y);
 
 /* p += sign * x * y; and p += x * y for a constant y. p is neither x nor y. */
@@ -27,15 +27,15 @@ void polynomial_add_times(struct polynomial *p, const struct polynomial *x, cons
 /* p := p / y. Ends the program if there is a remainder. */
 void polynomial_divide(struct polynomial *p, const struct polynomial *y);
 
-/* The sign at i / 2^k; and that on the closed interval from i / 2^k to (i + 1) / 2^k, or 2 if it
- * may have a root there. */
+/* The first returns the sign of p at i / 2^k. The second returns the sign of p on the closed
+ * interval from i / 2^k to (i + 1) / 2^k, or 2 if p may have a root there. */
 int polynomial_sign(const struct polynomial *p, const mpz_t i, unsigned k);
 int polynomial_sign_over(const struct polynomial *p, const mpz_t i, unsigned k);
 
-/* p := the greatest common divisor of both, neither 0. */
+/* p := the greatest common divisor of p and x. Neither is 0. */
 void polynomial_gcd(struct polynomial *p, const struct polynomial *x);
 
-/* Sturm's sequence of p without repeated roots. */
+/* The Sturm sequence of p, without the repetitions of its roots. */
 struct sturm {
     int count;
     struct polynomial p[DEGREE_MAX + 1];

@@ -35,7 +35,7 @@ struct solid {
     double vertex[SOLID_LISTED_MAX][FMB_DIM_MAX];
     uint64_t cloud_seed;
     double radius; /* of each of its frames */
-    bool ending;   /* has this pose at the end of the window, and no velocity; else 0 */
+    bool ending;   /* has this end, and no velocity; if false, the end is 0 */
     double end_origin[FMB_DIM_MAX], end_orientation[4];
 };
 
@@ -90,7 +90,7 @@ bool question_is_symmetric(const struct question *question);
 /* The same question with a and b in each other's place. */
 struct question question_swapped(const struct question *question);
 
-/* The same with time reversed, of solids that are at rest or have ends. */
+/* The same question with time reversed. Each solid is at rest or has an end. */
 struct question question_reversed(const struct question *question);
 
 /* Any shape of the dimension but a box and a hull. */

@@ -111,7 +111,7 @@ static void set_rotation(const struct fmb_placement *placement, mpq_srcptr at, m
     mpq_clear(norm);
 }
 
-/* At that time, at rest. */
+/* Sets the position at a time, and the velocity to 0. */
 static void stop(const struct fmb_placement *placement, mpq_srcptr at, double duration,
                  struct rational_solid *out)
 {

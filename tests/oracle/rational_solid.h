@@ -27,13 +27,13 @@ struct rational_solid {
 void rational_solid_init(const struct fmb_frame *frame, const struct fmb_placement *placement,
                          struct rational_solid *out);
 
-/* The same at a time, in shares of the window, and at rest; at NULL: as above. */
+/* The same, at rest in the pose at a time, a share of the window. If at is NULL: as above. */
 void rational_solid_init_at(const struct fmb_frame *frame, const struct fmb_placement *placement,
                             mpq_srcptr at, double duration, struct rational_solid *out);
 void rational_solid_clear(struct rational_solid *solid);
 
-/* The orientation, (w, x, y, z) also in 2D, at the start and, if there is an end, at the end, with
- * the sign that makes the turn less than half a one. */
+/* The orientations at the start and at the end of the window, (w, x, y, z) also in 2D. If there is
+ * no end, both are the same. The sign of the end makes the turn less than 180 degrees. */
 void rational_orientation(const struct fmb_placement *placement, mpq_t start[4], mpq_t end[4]);
 
 /* The greatest of sign * (coordinate of a vertex over the window), plus the radius. */

@@ -1,36 +1,38 @@
-/* Method. M(s) = B - A is a polytope. Its verdict follows from finitely many directions:
+/* Method. M(s) = B - A is a polytope. Finitely many directions n decide its verdict:
  *
- *     n . m > 0 for all vertices m of M:                           separated
- *     otherwise, n . m >= 0 for all, and > 0 for some:             touching
- *     neither, for no n of them:                                   overlapping
+ *     n . m > 0 for all vertices m of M, for some n:                        separated
+ *     otherwise, n . m >= 0 for all m, and > 0 for some m, for some n:      touching
+ *     otherwise:                                                            overlapping
  *
  * if they include the normals of all facets of M within the plane, the line or the space that M
- * spans, and a basis of what is perpendicular to that. Proof: the relative interiors meet if and
- * only if 0 is in the relative interior of M. If 0 is not in what M spans, n . m is one number
- * other than 0 for some n of the basis. Otherwise 0 is outside M, or on its boundary, if and only
- * if this is so for the normal of a facet; and n . m is not 0 for all m, as n lies in what M spans.
+ * spans, and a basis of the orthogonal complement of this span. Proof: the relative interiors meet
+ * if and only if 0 is in the relative interior of M. If 0 is not in the affine hull of M, some n of
+ * the basis has the same n . m for all m, and it is not 0. Otherwise 0 is outside M, or on its
+ * boundary, if and only if n . m > 0 for all m, or n . m >= 0 for all m, for the normal n of a
+ * facet; and n . m is not 0 for all m, as n lies in the span of M.
  *
- * The directions. Facets of a solid M belong to a face of A, a face of B, or an edge of each. A
- * flat M lies in a plane parallel to A or to B, if one of these is flat, or is a parallelogram of
- * two segments. So to the faces and edges of
+ * The directions. Each facet of a solid M comes from a face of A, a face of B, or an edge of each.
+ * A flat M lies in a plane parallel to A or to B, if one of these is flat, or is a parallelogram of
+ * two segments. The lists of faces and edges therefore also contain, for
  *
- *     a polygon     belong its normal, as a face and as an edge, and, as faces, the normals of its
- *                   edges within its plane;
+ *     a polygon     its normal, as a face and as an edge, and the normals of its edges within its
+ *                   plane, as faces;
  *     a segment     itself, and two vectors perpendicular to it, as faces; in 2D one of these is in
  *                   the plane;
- *     a point       the axes, as faces;
- *     two segments  e and f in 3D also e x (e x f) and f x (e x f).
+ *     a point       the axes, as faces.
  *
- * More directions than needed do no harm. In 2D all is in the plane z = 0 of space.
+ * Two segments e and f in 3D also have the directions e x (e x f) and f x (e x f). Unneeded
+ * directions do no harm. In 2D everything lies in the plane z = 0 of space.
  *
- * The polynomials. N(s) = |q(s)|^2 R(q(s)) is one of degree 2, and so F(s) = n(s) . m(s), times
- * |q_A|^2 |q_B|^2, is one for each direction and each pair of vertices; positive factors are
- * divided out. The verdict is constant between the roots of these polynomials. An interval in which
- * they have none, or only one and the same (which their greatest common divisor has, too), is
- * decided by their signs at both ends, on both sides of the root, and at the root, where they are
- * 0. Others are halved. Sturm's theorem counts roots. Where a polynomial has one sign on a whole
- * interval, it need not be looked at again within it; a direction in which two of them have
- * different signs neither. */
+ * The polynomials. The entries of N(s) = |q(s)|^2 R(q(s)) are polynomials of degree 2. So
+ * F(s) = n(s) . m(s), times |q_A|^2 |q_B|^2, is a polynomial for each direction and each pair of
+ * vertices; positive factors are divided out. The verdict is constant between the roots of these
+ * polynomials. Consider an interval on which they have no roots, or only one root, common to all of
+ * them that have any (their greatest common divisor has it, too). The signs at both ends, on both
+ * sides of the root, and at the root, where the polynomials that have it are 0, decide this
+ * interval. Other intervals are halved. Sturm's theorem counts roots. A polynomial with one sign on
+ * a whole interval is not examined again within it; nor is a direction if two of its polynomials
+ * have different signs there. */
 #include "turning.h"
 
 #include <string.h>
@@ -44,9 +46,9 @@ enum {
     FACES_MAX = 130,
     EDGES_MAX = 60,
     HALVINGS_MAX = 700,
-    FEW = 40, /* polynomials that are worth counting roots of */
-    WIDE = 6, /* halvings after which it is worth it anyway */
-    BITS = 64 /* to which a time of contact is enclosed, at least */
+    FEW = 40, /* up to so many open polynomials, roots are counted at once */
+    WIDE = 6, /* after so many halvings, roots are counted anyway */
+    BITS = 64 /* halvings, at least, that enclose a time of contact */
 };
 
 typedef mpz_t vector[3];
@@ -121,18 +123,18 @@ static void polynomial_cross(polynomial_vector x, polynomial_vector y, polynomia
 
 /* ---- A frame that moves ---- */
 
-/* In body coordinates; lengths are times a scale that both frames share. */
+/* In body coordinates. Lengths are multiplied by a scale that both frames share. */
 struct motion {
     int vertices, spanned; /* 0: a point; 1: a segment; 2: a polygon; 3 */
     vector vertex[TURNING_VERTICES_MAX];
     int faces, edges;
     vector face[FACES_MAX], edge[EDGES_MAX];
-    unsigned facets[FACES_MAX]; /* which vertices each has; of a solid */
+    unsigned facets[FACES_MAX]; /* of a solid: bits, the vertices of each facet */
     polynomial_vector position;
     struct polynomial norm, matrix[3][3];
 };
 
-/* Takes a vector that is neither 0 nor parallel to one of the list. */
+/* Appends a vector unless it is 0 or parallel to one in the list. */
 static void take(vector *list, int *count, int most, vector v)
 {
     vector across;
@@ -154,8 +156,8 @@ static void take(vector *list, int *count, int most, vector v)
     (*count)++;
 }
 
-/* Whether all vertices are on one side of the plane through vertex i, across n. on := those in it.
- */
+/* Whether all vertices are on one side of the plane through vertex i with normal n. on := the
+ * vertices in this plane. */
 static bool supports(struct motion *motion, int i, vector n, unsigned *on)
 {
     vector way;
@@ -399,7 +401,7 @@ struct turning {
     struct motion motion[2];
     polynomial_vector way; /* from A's position to B's */
     struct polynomial *polynomial;
-    struct sturm **sturm; /* NULL: not yet */
+    struct sturm **sturm; /* NULL: not computed yet */
     struct direction *direction;
     int polynomials, directions;
     struct turning_truth *truth;
@@ -413,7 +415,8 @@ static bool is_equal(const struct polynomial *x, const struct polynomial *y)
     return equal;
 }
 
-/* out := n . N v for each vertex of a side, each once, divided and multiplied. Returns how many. */
+/* out := the distinct n . N v of the vertices v of a side, divided by divisor and multiplied by
+ * factor; either may be NULL. Returns how many. */
 static int heights(struct motion *motion, polynomial_vector n, const struct polynomial *divisor,
                    const struct polynomial *factor, struct polynomial *out)
 {
@@ -444,8 +447,8 @@ static int heights(struct motion *motion, polynomial_vector n, const struct poly
     return count;
 }
 
-/* Adds a direction and its polynomials: n . way times both norms, over divisors of which |q_A|^2 is
- * one or not, |q_B|^2 too. */
+/* Adds a direction and its polynomials: n . m times |q_A|^2 |q_B|^2, divided by |q_A|^2 if divide_a
+ * and by |q_B|^2 if divide_b. */
 static void add_direction(struct turning *turning, polynomial_vector n, bool divide_a,
                           bool divide_b)
 {
@@ -529,10 +532,10 @@ static void add_directions(struct turning *turning)
 
 /* ---- Intervals ---- */
 
-/* Signs on a closed interval: -1, 0 and 1; OPEN: unknown, or not the same all over. */
+/* Signs on a closed interval: -1, 0 and 1; OPEN: unknown or not constant. */
 enum { OPEN = 2 };
 
-/* Directions that may separate with n, with -n. */
+/* Bits of a direction: n may separate, -n may separate. */
 enum { WITH = 1, AGAINST = 2 };
 
 struct node {
@@ -560,7 +563,7 @@ static void raise_to(mpq_t most, const mpq_t x)
         mpq_set(most, x);
 }
 
-/* This verdict, from a time between from[0] and from[1] to one between to[0] and to[1]. */
+/* Records a verdict that holds from a time in [from[0], from[1]] to a time in [to[0], to[1]]. */
 static void record(struct turning_truth *truth, enum fmb_verdict verdict, mpq_t from[2],
                    mpq_t to[2])
 {
@@ -574,7 +577,7 @@ static void record(struct turning_truth *truth, enum fmb_verdict verdict, mpq_t 
     }
 }
 
-/* From i / 2^k to j / 2^k. */
+/* Records a verdict that holds from i / 2^k to j / 2^k. */
 static void record_between(struct turning *turning, enum fmb_verdict verdict, const mpz_t i,
                            const mpz_t j, unsigned k)
 {
@@ -588,8 +591,9 @@ static void record_between(struct turning *turning, enum fmb_verdict verdict, co
     mpq_clears(from[0], from[1], to[0], to[1], NULL);
 }
 
-/* Looks at what is open on the interval. Returns whether it is separated; open := how many
- * polynomials are, alive := whether any direction is alive. */
+/* Determines signs that are open on the interval. Returns whether the frames are separated there.
+ * If not, open := how many polynomials of alive directions remain open, alive := whether any
+ * direction is alive. */
 static bool look_over(struct turning *turning, struct node *node, const mpz_t i, unsigned k,
                       int *open, bool *alive)
 {
@@ -618,8 +622,8 @@ static bool look_over(struct turning *turning, struct node *node, const mpz_t i,
     return false;
 }
 
-/* Verdict at i / 2^k; at a root, where those of common[] are 0, and the others as there, if common
- * is not NULL. */
+/* Verdict at i / 2^k. If common is not NULL: at a root, where the polynomials of common[] are 0 and
+ * the others have their signs at i / 2^k. */
 static enum fmb_verdict verdict_at(struct turning *turning, const struct node *node, const mpz_t i,
                                    unsigned k, const bool *common)
 {
@@ -655,8 +659,8 @@ static const struct sturm *sturm_of(struct turning *turning, int p)
 }
 
 /* common[p] := whether polynomial p has a root in the open interval. divisor := the greatest common
- * divisor of those, 0 if there are none. Returns whether each has at most one there, and that one
- * is the same. */
+ * divisor of all polynomials that do, 0 if there are none. Returns false if a polynomial has
+ * several roots there, or if the divisor is constant. */
 static bool have_one_root(struct turning *turning, const struct node *node, const mpz_t from,
                           const mpz_t to, unsigned k, bool *common, struct polynomial *divisor)
 {
@@ -682,9 +686,9 @@ static bool have_one_root(struct turning *turning, const struct node *node, cons
     return true;
 }
 
-/* Encloses the root of the divisor. In: the open interval. Out: closer ends, of more halvings,
- * neither of them that of the interval. Returns false if it has no root there, or a middle is one.
- */
+/* Encloses the root of the divisor. In: the open interval. Out: an interval of more halvings whose
+ * ends are both strictly within it. Returns false unless the divisor has one root there, or if a
+ * midpoint is the root. */
 static bool enclose(const struct polynomial *divisor, mpz_t from, mpz_t to, unsigned *k)
 {
     struct sturm sturm;
@@ -709,7 +713,7 @@ static bool enclose(const struct polynomial *divisor, mpz_t from, mpz_t to, unsi
     return found;
 }
 
-/* Decides the closed interval by at most one root. Returns whether that was possible. */
+/* Decides the closed interval if it has at most one root. Returns whether it was decided. */
 static bool decide_by_root(struct turning *turning, const struct node *node, const mpz_t i,
                            unsigned k)
 {
@@ -756,7 +760,7 @@ static bool decide_by_root(struct turning *turning, const struct node *node, con
     return done;
 }
 
-/* Gives up: anything may be within. */
+/* Gives up: the interval may have any verdict. */
 static void leave_open(struct turning *turning, const mpz_t i, unsigned k)
 {
     mpz_t next;
@@ -803,7 +807,7 @@ static void visit(struct turning *turning, const mpz_t i, unsigned k, const stru
     free(node.alive);
 }
 
-/* ---- The whole ---- */
+/* ---- The whole window ---- */
 
 static void set_scale(mpz_t scale, const struct rational_solid *solid)
 {

@@ -52,7 +52,7 @@ function places() {
     return stage.items.map((item) => item.centre.toArray().map((x) => Math.round(x * 2 ** stage.exponent * 1e4) / 1e4));
 }
 
-/* Where the axis x of body k is, seen from above. */
+/* The direction of the x axis of body k, seen from above. */
 function axisOf(k) {
     const { source: { stream: { step, part } }, surface: { corners: [corner] } } = view.fmb.stage.items[k];
     const [from, to] = view.fmb.placed([corner.clone().set(0, 0, 0), corner.clone().set(1, 0, 0)], step, k, part);
@@ -77,7 +77,7 @@ function middleOf(n) {
     return { x: box.left + (at.x + 1) / 2 * box.width, y: box.top + (1 - at.y) / 2 * box.height };
 }
 
-/* The visible names that are not on their bodies, up to 4 pixels, or are over what is in front of them. */
+/* The visible labels that are more than 4 pixels off their bodies, or cover a body in front of their own. */
 function misplaced() {
     picture();
     const { stage, hitAt } = view.fmb;
@@ -91,7 +91,7 @@ function misplaced() {
     }).map(({ label }) => label.textContent);
 }
 
-/* Counts the pixels around a point of the scene, in units of the page, and their colours. */
+/* Counts the pixels, and those of each colour, around a point of the scene in units of the page. */
 function around(point, size = 12) {
     const { stage, camera } = view.fmb, { width, height } = one("#scene");
     const at = camera.position.clone().fromArray(point).multiplyScalar(2 ** -stage.exponent).project(camera);
@@ -99,7 +99,7 @@ function around(point, size = 12) {
     return pixels(one("#scene"), box);
 }
 
-/* The length of the scale as it is said, and as it is drawn; and of a unit of length on the screen. */
+/* The stated and the drawn length of the scale, and the length of a unit on the screen. */
 function scale() {
     const { stage, camera } = view.fmb, canvas = one("#axes"), ratio = canvas.width / canvas.clientWidth;
     const bar = pixels(canvas, { x: 0, y: Math.round(canvas.height - 9 * ratio), width: canvas.width, height: 1 }).drawn / ratio;
@@ -230,7 +230,7 @@ async function scene() {
     found.reversed = table();
 }
 
-/* Two scenes of a hand of two fingers. */
+/* Two scenes of a hand with two fingers. */
 async function frames() {
     await open("frames.html");
     const { stage } = view.fmb;

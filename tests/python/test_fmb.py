@@ -123,7 +123,7 @@ def of_json(pair):
 
 
 def placed_of(scene):
-    """Position, velocity, orientation and its count, the same of the end, of each body."""
+    """Of each body: position, velocity, orientation and its count; position, orientation and count of the end."""
     dim = scene.dim
     turns = 2 if dim == 2 else 4
     return [(tuple(p.position[:dim]), tuple(p.velocity[:dim]), tuple(p.orientation[:turns]), p.orientation_count,
@@ -303,7 +303,7 @@ class Answers(unittest.TestCase):
             answers = scene.decide(1, pairs=pairs, client=self.client, **WANTED)
             self.assertEqual(list(answers), list(read.decide(1, pairs=pairs, **WANTED)))
             self.assertTrue(all(status in (0, 13) for status in answers.statuses))
-            # In a window of 0 s there is no end; at an instant, bodies are where they begin.
+            # A window of 0 s has no end. At an instant, bodies are in the pose at the beginning.
             with self.assertRaisesRegex(fmb.Error, "^duration: .*body 0 moves: .*instant=True"):
                 scene.decide(0, client=self.client)
             with self.assertRaisesRegex(fmb.Error, "duration") as caught:

@@ -23,7 +23,7 @@ static const char usage[] =
     "  --busy N, --unknown N  result N says that the service was busy, or held no such body\n"
     "  --refuse N STATUS  result N has this status, and nothing else\n"
     "  --certify N TEXT   the certificate of result N\n"
-    "  --label N TEXT     the label of query N, of a scene\n"
+    "  --label N TEXT     the label of query N, a scene query\n"
     "  --drop N, --repeat N   result N is not there, or twice\n"
     "  --drop-query N, --repeat-query N  query N is not there, or twice\n"
     "  --client N, --sequence N  client ids or sequence numbers are larger by N\n"
@@ -365,8 +365,8 @@ static void drop_query(char **argument)
     take_out(number(is_query, argument[0]));
 }
 
-/* The label comes after the fingerprint, the time and both ids: its length, and the text, with its
- * 0. */
+/* The label follows the fingerprint, the time and both ids: its length, and its text with the
+ * terminating 0. */
 static void label(char **argument)
 {
     enum { LABEL = 32 };

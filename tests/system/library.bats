@@ -287,13 +287,13 @@ END
     [ -z "$(grep -rE "libfmb(-[a-z]+)?(\.so\.)?[0-9]|\b${version//./\\.}\b" Makefile .debian service clients msgs)" ]
 }
 
-@test "a release is the tarball of the last commit, the packages of it, and their sums" {
+@test "a release is the tarball of the last commit, its packages, and their checksums" {
     cd "$BATS_TEST_TMPDIR"
     mkdir -p tree/.github tree/service/fmb tree/.debian tree/tests
     cp "$OLDPWD/Makefile" tree
     cp "$OLDPWD/tests/tests.mk" tree/tests
     cp "$OLDPWD/service/fmb/fmb.h" tree/service/fmb
-    # Stands for the one of Debian: a package of the file that was committed.
+    # Replaces the script for Debian: makes a package of the committed file.
     printf '#!/bin/sh\nmkdir -p build/deb\ncp content build/deb/fmb_$1.deb\n' > tree/.debian/build.sh
     chmod +x tree/.debian/build.sh
     echo "## $version (not released yet)" > tree/.github/CHANGELOG.md
@@ -424,7 +424,7 @@ END
         ./small
         /usr/bin/python3 -c 'import fmb; fmb.version()'
         [[ $CMAKE_PREFIX_PATH == "$prefix"* ]]
-        # Nothing is left to set, but the loader would not find another folder.
+        # Nothing is left to set, except for another library folder, which the loader would not search.
         cd "$OLDPWD"
         ! "${install[@]}" | grep -A 9 '^to find' || false
         [ "$("${install[@]}" LIBDIR="$prefix/other" | sed '1,/^to find/d' | cut -d = -f 1 | xargs)" = 'export LD_LIBRARY_PATH export PKG_CONFIG_PATH' ]

@@ -81,7 +81,7 @@ prints_what_it_shows() {
     PATH=$build:$PATH
     ! sh ci.sh > said 2> /dev/null || false
     grep -qx 'overlapping in 2 of 9 scenes, first in scene 4 (swing .*): forearm and post; .*' said
-    # The rows before that contact.
+    # Keep only the rows before this contact.
     sed -i 4q path.csv
     sh ci.sh > said 2> /dev/null
     [ "$(cat said)" = "no contact in 3 scenes" ]

@@ -409,8 +409,8 @@ hulls() {
         "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
 }
 
-# A ball that is met by what has an end: one that moves, one that turns, and one that does both, in two
-# windows that join. All numbers are such as are printed.
+# A ball meets three bodies with ends: one moves, one turns, one does both. It does both in two consecutive
+# windows. All numbers are written as they are printed.
 ends() {
     jq -nc --argjson middle '{"position":[0.4,0.1,-0.3],"orientation":[0.9,0.1,-0.2,0.3]}' '
         {position: [1.1,-0.7,0.3], orientation: [-0.8,0.3,0.1,0.4]} as $last | ({shape: "box", size: [2,0.3,0.1]}) as $rod |
@@ -438,7 +438,7 @@ ends() {
         "$FMB" log scene --event $event "$BATS_TEST_TMPDIR/cut" 2> "$messages"
     done > "$BATS_TEST_TMPDIR/scenes"
     "$FMB" query --json --gap --point --local "$BATS_TEST_TMPDIR/scenes" | cmp - "$BATS_TEST_TMPDIR/local"
-    # The numbers are those that were given.
+    # The scenes have the given numbers.
     jq -S 'del(.pairs)' "$BATS_TEST_TMPDIR/ends.json" > "$BATS_TEST_TMPDIR/given"
     jq -S 'del(.pairs)' "$BATS_TEST_TMPDIR/scenes" | diff "$BATS_TEST_TMPDIR/given" -
 }

@@ -365,7 +365,8 @@ static void unknown_shapes_and_dimensions_are_refused(void **state)
     REFUSED(set_geometry(&query, 0, 2, 1, FMB_CUBOID, 6), FMB_DIMENSIONS_DIFFER, "dim: a 2D body against a 3D one");
 }
 
-/* Gives a placement an end pose of this orientation; a missing begin is not turned. */
+/* Gives a placement an end with this orientation. An orientation that is missing at the beginning
+ * is set to (1, 0, 0, 0). */
 static void set_end(struct query_placement *placement, const double q[4])
 {
     struct fmb_placement *placed = &placement->placed;
@@ -739,7 +740,8 @@ static void bodies_of_several_frames_are_answered(void **state)
     assert_int_equal(counts().frames, 7);
 }
 
-/* Whole and by handle, by methods that take them: what the engine says, or that it says nothing. */
+/* With bodies sent whole and by handle, each method gives the status and the answer of
+ * fmb_decide(). */
 static void ends_are_answered(void **state)
 {
     static const double ends[][4] = {{1, 0, 0, 0}, {2, 0, 0, 1}, {-1, 0.5, 0, 0}};
@@ -928,7 +930,7 @@ static void certificates_are_given_on_request(void **state)
     for (int i = 0; i < 9; i++) {
         struct pair_query query = cubes();
         query.placement[1].placed.position[0] = apart[i % 3];
-        if (i >= 6) /* about x, which keeps the verdict; one that touches has no certificate */
+        if (i >= 6) /* a turn about x keeps the verdict; touching has no certificate */
             set_end(&query.placement[1], (double[4]){1, 1, 0, 0});
         query.placement[0].velocity_count = i >= 3 ? 3 : 0;
         query.placement[0].placed.velocity[1] = 0.25;

@@ -618,7 +618,8 @@ static size_t count_named(const struct fmb_scene *scene)
     return count;
 }
 
-/* As the engine answers them: no pair without a verdict is taken for separated. */
+/* Status and answer are equal to the result of fmb_decide(). No undecided pair is taken for
+ * separated. */
 static void ends_are_answered(void **state)
 {
     enum { BODIES = 40 };
@@ -645,7 +646,7 @@ static void ends_are_answered(void **state)
         scene.pair_count = 60;
         assert_int_equal(fmb_client_query(test.client, &scene, check_end, &listed), FMB_OK);
         assert_int_equal(listed.given, 60);
-        /* At an instant, nothing is known of the end. */
+        /* At an instant, ends are ignored. */
         scene.duration = 0;
         scene.instant = true;
         struct fmb_placement still[BODIES];

@@ -301,7 +301,8 @@ static void the_list_of_vertices_does_not_matter(void **state)
     }
 }
 
-/* Makes two hulls of random points of the unit ball, the second moved by up to 1 on each axis. */
+/* Makes two hulls of random points in the unit ball, and moves the second one by up to 1 on each
+ * axis. */
 static void draw_pair(struct draw *draw, size_t count, struct hull hull[2],
                       struct fmb_placement at[2])
 {
@@ -321,8 +322,8 @@ static void draw_pair(struct draw *draw, size_t count, struct hull hull[2],
         at[1].position[axis] = draw_uniform(draw, -1, 1);
 }
 
-/* Of random overlaps at rest, doubles give the point of nearly all. Without support_widen() they
- * give two of three, and the programs compute the others. */
+/* Doubles give the points of nearly all random overlaps at rest. Without support_widen() they give
+ * two of three points, and the linear programs compute the others. */
 static void doubles_give_the_points_of_overlaps(void **state)
 {
     struct draw draw;

@@ -477,7 +477,7 @@ static void assert_same_scenes(const struct owned_scene *a, const struct owned_s
     }
 }
 
-/* Reads the bodies of a scene, and checks that they are read again after they were written. */
+/* Reads a scene, and checks that the bodies are the same after they are written and read again. */
 static struct owned_scene read_twice(const char *text)
 {
     char *written;
@@ -528,13 +528,14 @@ static void the_sign_of_zero_is_kept(void **state)
     scene_clear(&scene);
 }
 
-/* What is missing of an end is as at the begin; and a body that turns has an orientation there. */
+/* A position or orientation missing from an end is the same as at the beginning. A body whose end
+ * has an orientation also has one at the beginning. */
 static void ends_are_read_and_written(void **state)
 {
     static const struct {
         const char *members;
         double position, turn[2], end_position, end_turn[2]; /* x; w and z */
-        int count;                                           /* of numbers of the end */
+        int count;                                           /* numbers of the end */
     } cases[] = {
         {"\"position\": [0.1,0], \"end\": {\"position\": [1e-300,0]}",
          0.1,
@@ -568,7 +569,7 @@ static void ends_are_read_and_written(void **state)
         assert_same_bits(body->end_orientation, cases[i].end_turn, 2);
         scene_clear(&scene);
     }
-    /* origin is the position of the body, about which it turns, since orientation is missing. */
+    /* Without an orientation, origin is the position of the body, about which it turns. */
     struct owned_scene scene = read_twice(
         "{\"dim\": 3, \"bodies\": [{\"id\": 1, \"shape\": \"cuboid\", \"origin\": [5,0,0], "
         "\"components\": "

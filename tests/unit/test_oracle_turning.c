@@ -1,5 +1,5 @@
-/* The oracle of turning bodies: on cases worked out by hand, and on all families with time
- * reversed. build/turning holds it against the static oracle at some times of each window. */
+/* The oracle of turning bodies, on cases worked out by hand, and on all families with time
+ * reversed. build/turning compares it with the static oracle at some times of each window. */
 
 #include "unit.h"
 
@@ -17,7 +17,7 @@
 #define TO(...) , .end_origin = __VA_ARGS__
 #define TURNED(...) , .end_orientation = __VA_ARGS__}
 #define TABLE POSED(BOX, {{9, 0, 0}, {0, 9, 0}, {0, 0, 2}}) REST({0, 0, -1})
-/* Half as high as long: its corner is 5/2 from the middle, by 3-4-5. */
+/* 4 long and 3 high: its corner is 5/2 from the middle, by 3-4-5. */
 #define ROD POSED(BOX, {{4, 0, 0}, {0, 3, 0}, {0, 0, 1}})
 
 struct known {
@@ -31,22 +31,22 @@ static const struct known known[] = {
     {"a cube yaws and slides on a table",
      {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5}) QUATERNION({1, 0, 0, 0}) TO({1, 0, 0.5}) TURNED({1, 0, 0, 0.5}), 1},
      FMB_TOUCHING, {0, 1}},
-    {"a little above",
+    {"a cube a little above the table",
      {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5 + 0x1p-40}) QUATERNION({1, 0, 0, 0}) TO({1, 0, 0.5 + 0x1p-40}) TURNED({1, 0, 0, 0.5}), 1},
      FMB_SEPARATED, {0}},
-    {"a little below",
+    {"a cube a little below the top of the table",
      {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5 - 0x1p-40}) QUATERNION({1, 0, 0, 0}) TO({1, 0, 0.5 - 0x1p-40}) TURNED({1, 0, 0, 0.5}), 1},
      FMB_OVERLAPPING, {0, 1}},
-    {"it lifts off",
+    {"a cube lifts off the table",
      {TABLE, POSED(BOX, CUBE) FROM({0, 0, 0.5}) QUATERNION({1, 0, 0, 0}) TO({0, 0, 0.75}) TURNED({1, 0, 0, -0.5}), 1},
      FMB_TOUCHING, {0, 0}},
-    {"it lands",
+    {"a cube lands on the table",
      {TABLE, POSED(BOX, CUBE) FROM({0, 0, 1}) QUATERNION({1, 0, 0, 0.25}) TO({0, 0, 0.5}) TURNED({1, 0, 0, -0.5}), 1},
      FMB_TOUCHING, {1, 1}},
-    {"it tumbles over an edge that stays on the table",
+    {"a cube tumbles over an edge that stays on the table",
      {TABLE, POSED(CUBOID, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, -1, 0}), 1},
      FMB_TOUCHING, {0, 1}},
-    {"both on one turntable, a quarter turn",
+    {"two bodies on one turntable, a quarter turn",
      {POSED(BOX, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}),
       POSED(CUBOID, CUBE), .local = {0.5, 0, 0} FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
      FMB_TOUCHING, {0, 1}},
@@ -54,11 +54,11 @@ static const struct known known[] = {
      {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 3, 0}),
       ROD FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
      FMB_TOUCHING, {0.5, 0.5}},
-    {"the ceiling an ulp lower",
+    {"a rod under a ceiling an ulp lower",
      {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 3 - 0x1p-51, 0}),
       ROD FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
      FMB_OVERLAPPING, {0.5, 0.5}},
-    {"an ulp higher",
+    {"a rod under a ceiling an ulp higher",
      {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 3 + 0x1p-51, 0}),
       ROD FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
      FMB_SEPARATED, {0}},
@@ -66,19 +66,19 @@ static const struct known known[] = {
      {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 0.5 + 0x1.6a09e667f3bccp-1, 0}),
       POSED(BOX, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
      FMB_OVERLAPPING, {0.414214, 0.414214}},
-    {"rounded up",
+    {"a square rod under a ceiling at half a diagonal, rounded up",
      {POSED(BOX, {{9, 0, 0}, {0, 1, 0}, {0, 0, 9}}) REST({0, 0.5 + 0x1.6a09e667f3bcep-1, 0}),
       POSED(BOX, CUBE) FROM({0}) QUATERNION({1, 0, 0, 0}) TO({0}) TURNED({1, 0, 0, 1}), 1},
      FMB_SEPARATED, {0}},
-    {"a point passes through a turning plate, at the root of 416 less 20",
+    {"a point passes through a turning plate, at sqrt(416) - 20",
      {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 1, 0, 0}),
       POSED(CUBOID, {{0}}) REST({0.25, 0.625, 0.125}), 1},
      FMB_OVERLAPPING, {0.396078, 0.396078}},
-    {"beside it",
+    {"a point passes beside a turning plate",
      {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 1, 0, 0}),
       POSED(CUBOID, {{0}}) REST({1.25, 0.625, 0.125}), 1},
      FMB_SEPARATED, {0}},
-    {"on its edge",
+    {"a point on the edge of a turning plate",
      {POSED(CUBOID, {{1, 0, 0}, {0, 1, 0}}) FROM({0}) QUATERNION({4, 0, 0, 0}) TO({0}) TURNED({4, 1, 0, 0}),
       POSED(CUBOID, {{0}}) REST({1, 0.625, 0.125}), 1},
      FMB_TOUCHING, {0.396078, 0.396078}},
@@ -95,7 +95,7 @@ static const struct known known[] = {
       {.dim = 2, .shape = FMB_CUBOID, .component = {{4, 0}, {0, 0}}, .orientation_count = 2, .orientation = {1, 0},
        .ending = true, .end_orientation = {1, 1}}, 1},
      FMB_OVERLAPPING, {0.236068, 0.618034}},
-    {"in the plane: it stops at the corner",
+    {"in the plane: a segment stops at the corner of a square",
      {{.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}, .origin = {4, 3}},
       {.dim = 2, .shape = FMB_CUBOID, .component = {{5, 0}, {0, 0}}, .orientation_count = 2, .orientation = {1, 0},
        .ending = true, .end_orientation = {3, 1}}, 1},
@@ -146,7 +146,7 @@ static void decide_trial(const struct question *question, struct turning_truth *
     trial_end(&trial);
 }
 
-/* Whether the intervals [p[0], p[1]] and [1 - q[1], 1 - q[0]] have a time in common. */
+/* Whether the intervals [p[0], p[1]] and [1 - q[1], 1 - q[0]] intersect. */
 static bool is_mirrored(mpq_t p[2], mpq_t q[2])
 {
     mpq_t sum[2];

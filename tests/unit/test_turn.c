@@ -34,8 +34,8 @@ static void ends_have_to_be_poses_of_the_same_motion(void **state)
     const double longer[4] = {4, 0, 0, 0x1p-26}; /* 16 + 2^-52 */
     const double right[4] = {0, 1, 0, 0}, nearly[4] = {0x1p-190, 1, 0, 0};
     const double zero[4] = {0}, infinite[4] = {1, INFINITY, 0, 0}, tiny[4] = {1, 0x1p-201, 0, 0};
-    /* 3 * 0.1 - 0.3 is 2^-54 in doubles: not at right angles, though it is by rounded arithmetic.
-     */
+    /* In doubles 3 * 0.1 - 0.3 is 2^-54. Neither pair is at right angles, though rounded arithmetic
+     * gives 0 for the dot product of the second one. */
     const double third[4] = {0.75, 0.25, 0, 0}, tenth[4] = {0.1, -0.3, 0, 0};
     const double thrice[4] = {0.1, -(0.1 * 3), 0, 0};
     const struct {
@@ -143,7 +143,7 @@ static void an_end_needs_a_window(void **state)
                      FMB_BAD_DURATION);
 }
 
-/* In a window of 0 s: the pose at its beginning, in every answer. */
+/* In a window of 0 s, every answer is about the pose at its beginning. */
 static void an_instant_takes_the_pose_at_the_beginning(void **state)
 {
     static const double q0[4] = {1, 0.1, 0, 0}, q1[4] = {1, 0, 0, 0.5};
@@ -181,7 +181,7 @@ static void an_instant_takes_the_pose_at_the_beginning(void **state)
     }
 }
 
-/* The box of a body over the window has all its poses. */
+/* The box of a body over the window contains all its poses. */
 static void boxes_contain_the_turning_body(void **state)
 {
     static const double corner[2] = {-0.5, 0.5};
@@ -233,7 +233,8 @@ struct resting {
     double memory[2][400];
 };
 
-/* The certificate holds, and is there unless the frames touch, and turn, or are not decided. */
+/* The certificate holds. It is missing if and only if the pair is not decided, or turns and
+ * touches. */
 static void check_certificate(const struct fmb_placement *a, const struct fmb_placement *b,
                               enum fmb_status status, enum fmb_verdict verdict)
 {
@@ -246,8 +247,8 @@ static void check_certificate(const struct fmb_placement *a, const struct fmb_pl
         fail_msg("%s: %s", why, text);
 }
 
-/* Both orders of the pair have the same answer, which is returned, its verdict where nothing else
- * is wanted, and a certificate; in a window of 2 s. */
+/* Decides a pair in a window of 2 s. Checks that both orders have the same answer, that
+ * fmb_decide_prepared() gives the same verdict, and that the certificate of each order holds. */
 static enum fmb_status decide(const struct fmb_placement placement[2], struct fmb_answer *out)
 {
     struct fmb_answer swapped;
@@ -268,7 +269,7 @@ static enum fmb_status decide(const struct fmb_placement placement[2], struct fm
     return status;
 }
 
-/* Exchanges begin and end. */
+/* Exchanges the beginning and the end. */
 static void reverse(struct fmb_placement *placement)
 {
     for (int i = 0; i < 4; i++) {
@@ -282,7 +283,7 @@ static void reverse(struct fmb_placement *placement)
     }
 }
 
-/* The verdict and the contact, also with time reversed. */
+/* Expects the verdict and the contact, also with time reversed. */
 static void expect(const struct fmb_placement placement[2], enum fmb_verdict verdict, double first,
                    double last)
 {
@@ -320,7 +321,7 @@ static void set_table(struct resting *rest)
     rest->placement[1].position[0] = -1, rest->placement[1].end_position[0] = 1.5;
 }
 
-/* The heights of the body at begin and end. */
+/* Sets the heights of the body at the beginning and at the end. */
 static void lift(struct resting *rest, double begin, double end)
 {
     rest->placement[1].position[2] = begin, rest->placement[1].end_position[2] = end;
@@ -360,7 +361,7 @@ static void bodies_that_yaw_and_slide_on_a_table(void **state)
     expect_resting(&rest, 0.5);
 }
 
-/* A prism of 50 vertices below and 50 above. */
+/* A prism with 50 vertices at the bottom and 50 at the top. */
 static void hulls_that_yaw_and_slide_on_a_table(void **state)
 {
     struct resting rest;
@@ -375,7 +376,8 @@ static void hulls_that_yaw_and_slide_on_a_table(void **state)
     expect_resting(&rest, 0.5);
 }
 
-/* Both turn about one axis as one body, at rest to each other; and the same from close by. */
+/* Both turn about one axis as one body, at rest relative to each other: 2^-40 deep, touching, or
+ * 2^-40 apart. */
 static void bodies_on_one_turntable(void **state)
 {
     static const double q0[4] = {2, 1, 0, 1}, q1[4] = {3, 0, 1, -1};
@@ -436,8 +438,8 @@ static void cubes_tumble_over_an_edge(void **state)
     expect(rest.placement, FMB_OVERLAPPING, 0, 2);
 }
 
-/* A point passes through a plate that turns, at an irrational time: the interiors meet, which no
- * time that is looked at shows. */
+/* A point passes through a turning plate at an irrational time. The interiors meet then, and at no
+ * time that the engine tests. */
 static void a_point_through_a_turning_plate_is_never_called_touching(void **state)
 {
     static const double q0[4] = {4, 0, 0, 0}, q1[4] = {4, 1, 0, 0};
@@ -452,7 +454,7 @@ static void a_point_through_a_turning_plate_is_never_called_touching(void **stat
     assert_int_equal(decide(pair, &answer), FMB_CANNOT_DECIDE);
 }
 
-/* Windows that share a pose find the contact at the seam both. */
+/* Two windows that share a pose both have the contact in that pose. */
 static void windows_join(void **state)
 {
     static const double q0[4] = {1, 0, 0, 0}, q1[4] = {3, 0, 0, 1}, q2[4] = {2, 1, 0, 1};
@@ -469,8 +471,8 @@ static void windows_join(void **state)
     assert_true(answer.verdict != FMB_SEPARATED && answer.contact[0] == 0);
 }
 
-/* A straight motion that is given as an end has the verdict, and nearly the contact, of the
- * velocity. */
+/* A straight motion given as an end has the same verdict as the velocity, and nearly the same
+ * contact. */
 static void straight_motion_as_an_end(void **state)
 {
     uint64_t seed = 3;
@@ -509,9 +511,8 @@ static void straight_motion_as_an_end(void **state)
     assert_true(counts[FMB_SEPARATED] > 30 && counts[FMB_OVERLAPPING] > 30 && counts[0] < 5);
 }
 
-/* Bodies whose numbers span the range of doubles are left to integers, or have no answer. */
-/* A window that ends with a graze: the last time of contact lies in intervals whose middles are no
- * short dyadic numbers. */
+/* A contact that ends with a graze. Its last time lies in intervals whose midpoints are not short
+ * dyadic numbers. */
 static void the_end_of_a_graze_is_that_of_exact_poses(void **state)
 {
     static const double box[4] = {-0x1.ab199a5cf83c8p-2, -0x1.cc3bf00e29928p-1, 0x1.e6ef8a214a85p-4,
@@ -537,11 +538,12 @@ static void the_end_of_a_graze_is_that_of_exact_poses(void **state)
     struct fmb_answer answer;
     assert_int_equal(fmb_decide(fmb_method_default(), &pair[0], &pair[1], 1, 0, &answer), FMB_OK);
     assert_int_equal(answer.verdict, FMB_OVERLAPPING);
-    /* By rational numbers, the frames part between these times. */
+    /* In rational arithmetic, the frames part between these times. */
     assert_true(answer.contact[1] >= 0.2896245213189828);
     assert_true(answer.contact[1] <= 0.2896245213189829 + 1e-12);
 }
 
+/* Scaling by a power of 2, from 2^-1000 to 2^900, keeps the verdict. */
 static void numbers_of_any_size(void **state)
 {
     static const double q0[4] = {1, 0, 0, 0}, q1[4] = {3, 0, 0, 1};
@@ -564,8 +566,8 @@ static void numbers_of_any_size(void **state)
 
 /* ---- Random windows against static poses ----
  *
- * With small whole numbers the poses at multiples of 1/32 of the window are exact in doubles, and
- * the static answers there are those of pairs that do not turn. */
+ * With small whole numbers, the poses at multiples of 1/32 of the window are exact in doubles.
+ * There, the static answers are the answers about pairs that do not turn. */
 
 enum { SAMPLES = 32 };
 
@@ -638,7 +640,7 @@ static void set_sample(const struct fmb_placement *placement, int k, struct fmb_
                 : placement->position[axis] + placement->velocity[axis] * k / 16;
 }
 
-/* No static answer contradicts that of the window. Bodies are at most 20 from the origin. */
+/* No static answer contradicts the answer of the window. Bodies are at most 20 from the origin. */
 static void expect_no_contradiction(const struct fmb_placement pair[2],
                                     const struct fmb_answer *answer)
 {
@@ -661,8 +663,8 @@ static void expect_no_contradiction(const struct fmb_placement pair[2],
     }
 }
 
-/* Within 3e-12 s before the first contact and after the last one the bodies are apart, and the gap
- * is that at its time. */
+/* At 3e-12 s before the first contact and after the last one, the upper bound of the gap is above
+ * -1e-13. The gap of a separated pair is the static gap at its time, up to 2e-11. */
 static void expect_tight(const struct fmb_placement pair[2], const struct fmb_answer *answer)
 {
     struct fmb_placement pose[2];
@@ -724,7 +726,7 @@ static void random_windows_agree_with_static_poses(void **state)
 
 /* ---- Scenes ---- */
 
-/* Answers of a scene in steps: those of fmb_decide() for each pair, bit for bit. */
+/* A scene in steps gives the answers of fmb_decide() for each pair, bit for bit. */
 static void scenes_give_the_answers_of_single_pairs(void **state)
 {
     enum { BODIES = 14 };
@@ -775,7 +777,7 @@ static void scenes_give_the_answers_of_single_pairs(void **state)
     free(memory_of_scene);
 }
 
-/* A pair without a verdict is among the answers where all pairs are asked for. */
+/* A scene of all pairs gives an answer for a pair without a verdict. */
 static void pairs_without_a_verdict_are_named(void **state)
 {
     static const double q0[4] = {4, 0, 0, 0}, q1[4] = {4, 1, 0, 0};
@@ -804,7 +806,8 @@ static void pairs_without_a_verdict_are_named(void **state)
     free(memory_of_scene);
 }
 
-/* Numbers whose exponents span a thousand bits: both orders give the same, and the work ends. */
+/* Numbers whose exponents span a thousand bits: both orders have the same answer, and the
+ * computation ends. */
 static void hostile_exponents_end(void **state)
 {
     seed_of_draw = 9;

@@ -1,5 +1,5 @@
-/* Certificates of pairs of bodies that turn within the window, made of random pairs, and damaged;
- * and worked examples for their checker. */
+/* Certificates of pairs of bodies that turn within the window: worked examples for the checker,
+ * certificates of random pairs, and damaged certificates. */
 #include "unit.h"
 
 #include <math.h>
@@ -36,9 +36,9 @@ static void expect_by_hand(const struct fmb_placement pair[2], const struct by_h
             fail_msg("%s", by_hand[i].text);
 }
 
-/* A cube that turns by 90 degrees about z, and one at x = 3, at rest. The first one reaches to
- * x = sqrt(1/2), along any direction fixed in it to 1/2; at the beginning it is its own frame, at
- * the end x of the world is its -y. */
+/* A cube that turns by 90 degrees about z, and a cube at rest at x = 3. The first cube reaches to
+ * x = sqrt(1/2), and to 1/2 along each of its own axes. At the beginning its axes are the axes of
+ * the world; at the end x of the world is its -y. */
 static void intervals_by_hand(void **state)
 {
     static const struct by_hand cases[] = {
@@ -63,7 +63,7 @@ static void intervals_by_hand(void **state)
         {FMB_SEPARATED, false, "separated from 0 to 1 normal b (0 0 0)"},
         {FMB_SEPARATED, false,
          "separated from 0 to 1/2 normal b (1 0 0) from 1/2 to 1 normal b (0 1 0)"},
-        /* Holes, orders, and intervals beyond the window */
+        /* Missing times, wrong orders, and intervals beyond the window */
         {FMB_SEPARATED, false, "separated from 0 to 1/2 normal b (1 0 0)"},
         {FMB_SEPARATED, false, "separated from 1/2 to 1 normal b (1 0 0)"},
         {FMB_SEPARATED, false,
@@ -108,9 +108,9 @@ static void intervals_by_hand(void **state)
     expect_by_hand(pair, cases, COUNT(cases));
 }
 
-/* A triangle that turns by 90 degrees about its corner (0, 0), from the first quadrant to the
- * second, and moves from (0, 0) to (2, 4) in 2 s: at 1/2 s the corner is at (1/2, 1), and the
- * triangle within 43 and 134 degrees of it. A triangle at rest at (1/2, 5/4). */
+/* A triangle turns by 90 degrees about its corner (0, 0), from the first quadrant to the second,
+ * and moves from (0, 0) to (2, 4) in 2 s. At 1/2 s the corner is at (1/2, 1), and the triangle lies
+ * between the directions of 43 and 134 degrees from it. Another triangle rests at (1/2, 5/4). */
 static void overlaps_by_hand(void **state)
 {
     static const struct by_hand cases[] = {
@@ -144,13 +144,13 @@ static void overlaps_by_hand(void **state)
     /* The quaternion of the pose at -2 s would be 0. */
     pair[0].end_orientation[1] = 0;
     assert_false(holds(pair, 2, FMB_OVERLAPPING, "overlapping at -2 a 0 1 2 b 0 1:1/8 2:1/8"));
-    /* Without a window, or with an end that is none, there is nothing to prove. */
+    /* Without a window, or with an invalid end, there is nothing to prove. */
     assert_false(holds(pair, 0, FMB_SEPARATED, "separated from 0 to 1 normal a (1 0)"));
     pair[0].end_count = 3;
     assert_false(holds(pair, 2, FMB_OVERLAPPING, cases[0].text));
 }
 
-/* Text of any length costs no more than each of its intervals. */
+/* The check of a long text costs no more than the checks of its intervals. */
 static void many_intervals(void **state)
 {
     enum { INTERVALS = 503, SIZE = 60 * INTERVALS };
@@ -175,7 +175,7 @@ static void many_intervals(void **state)
 
 /* ---- Random pairs ---- */
 
-/* Shapes of one size, radii now and then. memory: of a hull */
+/* Draws a body of about size 1; one in four has a radius. memory: for a hull. */
 static void draw_body(struct draw *draw, int dim, double memory[100], struct fmb_body *out)
 {
     enum { HULL = 12 };
@@ -195,7 +195,7 @@ static void draw_body(struct draw *draw, int dim, double memory[100], struct fmb
         assert_int_equal(fmb_body_inflate(out, draw_uniform(draw, 0.125, 0.5)), FMB_OK);
 }
 
-/* One of a pair may be at rest or have a velocity. */
+/* Draws a placement with an end if it turns, with a velocity otherwise. */
 static struct fmb_placement draw_placement(struct draw *draw, const struct fmb_body *body,
                                            bool turns)
 {
@@ -234,7 +234,7 @@ static void negate(const char *text, char *out)
     *out = '\0';
 }
 
-/* Damage to a text of intervals that leaves none that proves anything. */
+/* Damages the text of a separated pair in several ways. No damaged text proves anything. */
 static void refuse_damage(const struct fmb_placement pair[2], const char *text)
 {
     char damaged[2 * FMB_CERTIFICATE_MAX];
@@ -242,13 +242,13 @@ static void refuse_damage(const struct fmb_placement pair[2], const char *text)
     negate(text, damaged);
     assert_false(holds(pair, 2, FMB_SEPARATED, damaged));
     strcpy(damaged, text);
-    *strrchr(damaged, 'f') = '\0'; /* the last interval left out, but for a space */
+    *strrchr(damaged, 'f') = '\0'; /* without the last interval, except for its space */
     assert_false(holds(pair, 2, FMB_SEPARATED, damaged));
     damaged[strlen(damaged) - 1] = '\0';
     assert_false(holds(pair, 2, FMB_SEPARATED, damaged));
     if (!second)
         return;
-    snprintf(damaged, sizeof damaged, "separated%s", second); /* the first one */
+    snprintf(damaged, sizeof damaged, "separated%s", second); /* without the first interval */
     assert_false(holds(pair, 2, FMB_SEPARATED, damaged));
     snprintf(damaged, sizeof damaged, "separated%s%.*s", second, (int) (second - first), first);
     assert_false(holds(pair, 2, FMB_SEPARATED, damaged));
@@ -256,7 +256,7 @@ static void refuse_damage(const struct fmb_placement pair[2], const char *text)
     assert_false(holds(pair, 2, FMB_SEPARATED, damaged));
 }
 
-/* Every pair that is decided has a certificate in both orders, which proves nothing else. */
+/* Every decided pair has a certificate in both orders. It proves the verdict, and no other one. */
 static void random_pairs(void **state)
 {
     struct draw draw;
@@ -307,8 +307,8 @@ static void random_pairs(void **state)
     assert_true(counts[0] <= 1 + sample / 100 && products > 0);
 }
 
-/* Two boxes that turn as one body, 2^-51 apart or in each other: doubles leave them open. The
- * direction that proves it is a face, which is given exactly, and over one interval. */
+/* Two boxes that turn as one body, 2^-51 apart, touching, or 2^-51 deep: doubles leave them open.
+ * The normal of a face proves that they are apart. It is exact, and one interval suffices. */
 static void clearances_that_doubles_do_not_see(void **state)
 {
     struct fmb_body body[2];
