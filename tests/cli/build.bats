@@ -12,6 +12,7 @@ setup_file() {
     env -u MAKEFLAGS -u MAKELEVEL make -npq no-such-target > "$known" 2> /dev/null || true
     cat > "$tool" << END
 #!/bin/sh
+[ "\${0##*/}" != clang-format ] || set -- # it reads sources that nothing compiles
 printf '%s\\n' "\${0##*/}" "\$@" >> "$called"
 out=
 case \${0##*/} in
