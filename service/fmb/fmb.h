@@ -399,9 +399,9 @@ enum fmb_want {
  * exceeds the largest double is infinite, with its sign: the points then prove no upper bound.
  *
  * Pairs in which a placement has an end: the gap is the least at any one time, so an overlapping
- * pair has minus its greatest depth at one time. time is the time of the least gap. The direction
- * proves the lower bound at this time only; the witness points of a separated pair prove the upper
- * bound.
+ * pair has minus its greatest depth at one time. time is the time of the least gap, for all
+ * verdicts and without witness points too. The direction proves the lower bound at this time only;
+ * the witness points of a separated pair prove the upper bound.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
  * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the
@@ -410,7 +410,7 @@ struct fmb_gap {
     double bounds[2];               /* lower and upper */
     double direction[FMB_DIM_MAX];  /* from a to b, a unit vector up to rounding */
     bool has_witness;               /* time and witness are set */
-    double time;                    /* of the points, seconds, within [0, T] */
+    double time;                    /* of the points, or of the least gap, seconds in [0, T] */
     double witness[2][FMB_DIM_MAX]; /* [0] in a, [1] in b, world coordinates */
     unsigned frame[2]; /* [0] of a, [1] of b: the pair of frames; 0 for a body of one frame */
 };

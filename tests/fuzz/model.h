@@ -30,7 +30,7 @@ struct model_made {
     double vertices[MODEL_DOUBLES_MAX]; /* of its hulls */
 };
 
-/* Whether a placement and a request are such as msgs/ requires, as far as this version goes. */
+/* Whether a placement and a request are such as msgs/ requires. */
 bool model_good_placement(const struct query_placement *placement, double duration);
 bool model_good_request(int64_t client_id, int64_t sequence_number, double duration, int32_t method,
                         int32_t want, int32_t wants);

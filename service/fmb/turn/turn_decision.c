@@ -539,8 +539,8 @@ static void set_box(const struct turn_path *path, double first, double last,
     }
 }
 
-/* Sets the gap of a pair that touches at s: 0, with the direction of the greatest lower bound among
- * the directions of the last searches and the directions by vertices. */
+/* Sets the gap of a pair that touches at s: 0, with s as time, and the direction of the greatest
+ * lower bound among the directions of the last searches and the directions by vertices. */
 static void set_touching_gap(struct turn_decision *decision, double s, struct fmb_gap *out)
 {
     struct turn_path *path = &decision->path;
@@ -548,6 +548,7 @@ static void set_touching_gap(struct turn_decision *decision, double s, struct fm
     double most = -INFINITY;
     memset(out, 0, sizeof *out);
     out->direction[0] = 1;
+    out->time = seconds(s, decision->frames.duration, false);
     if (!path->pair.usable)
         return;
     look(decision, s);

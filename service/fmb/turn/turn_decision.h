@@ -1,6 +1,6 @@
 /* Pairs of frames in which a placement has an end: verdict, contact, box and point.
  *
- * The window is divided into intervals of s = t / T whose ends are multiples of 2^-50. They are
+ * The window is divided into intervals of s = t / T whose ends are multiples of 2^-52. They are
  * examined in order of time, each at its middle first:
  *
  *   doubles   a search at the middle (turn_look()) proves an overlap, or gives a direction. The

@@ -32,7 +32,7 @@ void turn_exact_direction(const struct turn_exact *exact, const struct turn_corn
                           int sign, mpz_t m[2][3]);
 
 /* Returns what a direction, or its opposite if sign is -1, proves of the closed interval [lo, hi],
- * both multiples of 2^-53. It allocates and frees through GMP. */
+ * both multiples of 2^-52. It allocates and frees through GMP. */
 enum turn_outcome turn_exact_outcome(const struct turn_exact *exact,
                                      const struct turn_corners *corners, int sign, double lo,
                                      double hi);

@@ -6,11 +6,12 @@
  * the quaternions, linear in s, N(q) = |q|^2 R(q), and D the difference of the positions, linear
  * too. Times |q_A|^2 |q_B|^2, which is positive, n . (b - a) is a polynomial of degree 5 in s:
  *
- *   n = N_A m, m fixed in A   |q_B|^2 n . D + n . (N_B b) - |q_A|^2 |q_B|^2 m . a
- *   n = N_B m, m fixed in B   |q_A|^2 n . D - n . (N_A a) + |q_A|^2 |q_B|^2 m . b
- *   n = N_A e x N_B f         n . D + (x x f) . b + (y x e) . a,  x = N_B^T N_A e, y = N_A^T N_B f
+ *   n = R_A m, m fixed in A   N_A m . (|q_B|^2 D + N_B b) - |q_A|^2 |q_B|^2 m . a
+ *   n = R_B m, m fixed in B   N_B m . (|q_A|^2 D - N_A a) + |q_A|^2 |q_B|^2 m . b
+ *   n = R_A e x R_B f         (N_A e x N_B f) . D + (x x f) . b + (y x e) . a
+ *                             with x = N_B^T N_A e and y = N_A^T N_B f
  *
- * (in the last, already times one factor each, since N u x N v = |q|^2 N (u x v)). A polynomial is
+ * (the last since N u x R v = N (u x v) for the same quaternion). A polynomial is
  * sum_k c_k s^k (1 - s)^(5 - k) over an interval mapped to [0, 1]. The c_k are its Bernstein
  * coefficients times binomials, and are called coefficients below. They are convolutions of the
  * coefficients of the factors (motion.h), and linear in a and b. The least value of a coefficient
@@ -26,7 +27,7 @@
  *          D(s) by 3.1 u of the largest of the sums of magnitudes that D is made of at both ends,
  *          besides 4.1 u: 32 u reach covers this too
  *   N      a matrix is off by 12.1 u (motion.h; Frobenius) and 5.8 u: 18 u L
- *   n      N m: 18 u + 5.3 u = 24 u L |m|; the products of these: 24 + 24 + 4 = 52 u L_A L_B |e||f|
+ *   N m    18 u + 5.3 u = 24 u L |m|; products of two of them: 24 + 24 + 4 = 52 u L_A L_B |e| |f|
  *   x      N_B^T N_A e: 18 + 24 + 5.3 = 48 u L_A L_B |e|; y likewise; x x f: 52 u
  *   sums   a coefficient of a convolution is a sum of at most 3 products with positive weights, and
  *          a degree is raised once: at most 8 u for vectors, twice
@@ -36,8 +37,9 @@
  * |D|) plus the slack of the stored vertices; their sum by 3 u more. TURN_ERROR is 80 u. Underflow:
  * lengths are above 2^-200 and quaternions in [1, 2) up to components that do not matter: 2^-900.
  *
- * A radius R adds R |n|. |n| is at most the polynomial with the coefficients of |q_A|^2 |q_B|^2 |m|
- * or, in the last case, with the lengths of the coefficients of n. No shared state. */
+ * A radius R subtracts R |n|. Times the same factors, |n| is |q_A|^2 |q_B|^2 |m| or, in the last
+ * case, at most the polynomial with the lengths of the coefficients of N_A e x N_B f. No shared
+ * state. */
 #ifndef FMB_TURN_PATH_H
 #define FMB_TURN_PATH_H
 
@@ -59,7 +61,7 @@ void turn_path_set(const struct frame_pair *frames, struct turn_path *out);
 void turn_path_at(const struct turn_path *path, int f, double s, double q[4],
                   double position[FMB_DIM_MAX]);
 
-/* Sets path->pair to the pose at s, a multiple of 2^-53 in [0, 1]. */
+/* Sets path->pair to the pose at s, a multiple of 2^-52 in [0, 1]. */
 void turn_path_pose(struct turn_path *path, double s);
 
 /* Sets the direction of a search that ended with a simplex of dim + 1 vertices, which contains the
