@@ -160,6 +160,7 @@ int main(int argc, char **argv)
     gaps_run(&bench);
     hulls_run(&bench);
     radii_run(&bench);
+    turns_run(&bench);
     worst_run(&bench);
     print_noise(pinned);
     const bool complete = fclose(bench.json.out) == 0;

@@ -45,6 +45,7 @@ void poses_run(struct bench *bench);    /* poses */
 void gaps_run(struct bench *bench);     /* gaps */
 void hulls_run(struct bench *bench);    /* hulls */
 void radii_run(struct bench *bench);    /* radii; in hulls.c */
+void turns_run(struct bench *bench);    /* turns */
 void worst_run(struct bench *bench);    /* worst */
 
 #endif

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const sections[] = {"cells", "box",   "contacts", "poses",
-                                       "gaps",  "hulls", "radii",    "worst"};
+static const char *const sections[] = {"cells", "box",   "contacts", "poses", "gaps",
+                                       "hulls", "radii", "turns",    "worst"};
 
 enum { SECTIONS = sizeof sections / sizeof *sections };
 

@@ -37,12 +37,12 @@ static void *allocate_frames(size_t count, size_t frame)
     return frames;
 }
 
-static struct scene scene_of_size(size_t count, size_t bodies)
+struct scene scene_empty(size_t count)
 {
     return (struct scene){.count = count,
                           .prepared = allocate_frames(count, sizeof(struct fmb_prepared)),
                           .placement = scene_allocate(count, sizeof(struct fmb_placement)),
-                          .body = scene_allocate(bodies, sizeof(struct fmb_body)),
+                          .body = scene_allocate(count, sizeof(struct fmb_body)),
                           .lean = allocate_frames(count, sizeof(struct lean_frame)),
                           .oriented = allocate_frames(count, sizeof(struct oriented))};
 }
@@ -82,7 +82,7 @@ static void add(const struct solid *solid, struct scene *scene, size_t at)
 static struct scene draw_scene(const struct cell *cell, size_t bodies, uint64_t seed, bool posed)
 {
     struct draw draw = cell_draw(seed, "scene", cell, 0);
-    struct scene scene = scene_of_size(bodies, bodies);
+    struct scene scene = scene_empty(bodies);
     const size_t half = bodies / 2;
     for (size_t i = 0; i < half; i++) {
         struct question question;
@@ -108,7 +108,7 @@ struct scene scene_draw_posed(const struct cell *cell, size_t bodies, uint64_t s
 
 struct scene scene_of_corners(const struct scene *posed)
 {
-    struct scene scene = scene_of_size(posed->count, posed->count);
+    struct scene scene = scene_empty(posed->count);
     for (size_t at = 0; at < posed->count; at++) {
         const struct lean_frame *lean = &posed->lean[at];
         struct solid solid = {.dim = posed->body[at].dim,
@@ -124,7 +124,7 @@ struct scene scene_of_corners(const struct scene *posed)
 
 struct scene scene_of_questions(const struct question *questions, size_t count)
 {
-    struct scene scene = scene_of_size(2 * count, 2 * count);
+    struct scene scene = scene_empty(2 * count);
     for (size_t i = 0; i < count; i++) {
         add(&questions[i].a, &scene, i);
         add(&questions[i].b, &scene, i + count);
@@ -192,6 +192,16 @@ void pairs_free(struct pairs *pairs)
 {
     free(pairs->at);
     *pairs = (struct pairs){0, NULL};
+}
+
+struct pairs pairs_side_by_side(size_t count)
+{
+    struct pairs pairs = {2 * count, scene_allocate(2 * count, sizeof *pairs.at)};
+    for (size_t i = 0; i < 2 * count; i++) {
+        pairs.at[i][0] = (unsigned) (i % count);
+        pairs.at[i][1] = (unsigned) (count + (i < count ? i : i + 1) % count);
+    }
+    return pairs;
 }
 
 static void draw_pair(const struct scene *scene, struct draw *draw, unsigned pair[2])

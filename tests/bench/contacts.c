@@ -106,17 +106,6 @@ static void draw_question(struct draw *draw, const struct cell *cell,
     }
 }
 
-/* Pair i is body i and body count + i. As many pairs of the same bodies follow for warming up. */
-static struct pairs pairs_side_by_side(size_t count)
-{
-    struct pairs pairs = {2 * count, scene_allocate(2 * count, sizeof *pairs.at)};
-    for (size_t i = 0; i < 2 * count; i++) {
-        pairs.at[i][0] = (unsigned) (i % count);
-        pairs.at[i][1] = (unsigned) (count + (i < count ? i : i + 1) % count);
-    }
-    return pairs;
-}
-
 static struct scene scene_of_scenario(const struct bench *bench, const struct cell *cell,
                                       const struct scenario *scenario)
 {

@@ -39,7 +39,7 @@ static int needs_of(const struct peer_solid *solid, size_t count)
 {
     int needs = 0;
     for (size_t i = 0; i < count; i++)
-        needs |= solid[i].hull ? PEER_HULLS : 0;
+        needs |= (solid[i].hull ? PEER_HULLS : 0) | (solid[i].motion ? PEER_TURNING : 0);
     return needs;
 }
 
