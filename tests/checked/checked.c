@@ -5,8 +5,6 @@
 #include "campaign_options.h"
 #include "checked_bounds.h"
 #include "families.h"
-#include "posed.h"
-#include "round.h"
 
 static const long usual_pairs = 4;
 
@@ -41,14 +39,15 @@ static void help(void)
 
 int main(int argc, char **argv)
 {
-    static const struct options_program program = {"checked", option_list, help, usual_pairs};
+    static const struct options_program program = {"checked", option_list, help, usual_pairs,
+                                                   family_checked_at};
     struct options options;
     const int code = options_parse(&program, argc, argv, &options);
     if (code != OPTIONS_RUN)
         return code;
     for (int i = 0; i < options.families; i++)
         check_family(options.family[i], options.pairs, options.seed);
-    for (size_t i = 0; options.families == 0 && family_all_at(i); i++)
-        check_family(family_all_at(i), options.pairs, options.seed);
+    for (size_t i = 0; options.families == 0 && family_checked_at(i); i++)
+        check_family(family_checked_at(i), options.pairs, options.seed);
     return check_report(stdout) ? EXIT_NONE_WRONG : EXIT_FOUND;
 }

@@ -82,6 +82,9 @@ static struct constant constants[] = {
     {"SUPPORT_DETERMINANT", 0, 0, 0, AT_HAND},
     {"SUPPORT_HEIGHT", 0, 0, 0, AT_HAND},
     {"POLYTOPE_ERROR", 0, 0, 0, AT_HAND},
+    {"ORIENTATION_ERROR", 0, 0, 0, AT_HAND},
+    {"MOTION_BOX_ERROR", 0, 0, 0, AT_HAND},
+    {"TURN_ERROR", 0, 0, 0, AT_HAND},
 };
 
 /* ---- Checking ---- */
@@ -379,11 +382,11 @@ static void check_rotations(const struct fmb_prepared *frame)
                        frame->frame->component[i]);
 }
 
-static void check_vertices(const struct fmb_prepared *const both[2], double duration)
+static void get_vertices(const struct fmb_prepared *const both[2], struct checked_vertices out[2])
 {
-    struct checked_vertices out[2] = {};
     at.traits = {};
     for (int f = 0; f < 2; f++) {
+        out[f] = {};
         const struct fmb_frame *frame = both[f]->frame;
         const struct fmb_placement *placement = both[f]->placement;
         out[f].shape = frame->shape;
@@ -402,8 +405,27 @@ static void check_vertices(const struct fmb_prepared *const both[2], double dura
         memcpy(out[f].position, placement->position, sizeof placement->position);
         memcpy(out[f].velocity, placement->velocity, sizeof placement->velocity);
         memcpy(out[f].orientation, placement->orientation, sizeof placement->orientation);
+        out[f].end_count = placement->end_count;
+        memcpy(out[f].end_position, placement->end_position, sizeof placement->end_position);
+        memcpy(out[f].end_orientation, placement->end_orientation,
+               sizeof placement->end_orientation);
     }
-    check_hulls(out, duration);
+}
+
+static void begin_scratch()
+{
+    if (!scratch[0]->_mp_d)
+        for (auto &each : scratch)
+            mpf_init2(each, BITS);
+}
+
+void check_turning_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
+{
+    const struct fmb_prepared *const both[2] = {a, b};
+    struct checked_vertices vertices[2];
+    begin_scratch();
+    get_vertices(both, vertices);
+    check_turns(vertices, duration);
 }
 
 void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration)
@@ -412,15 +434,15 @@ void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, doub
     const enum kernel_kind kind = kernel_kind_of_bounds(a, b, duration, &swapped);
     if (kind >= KERNEL_KINDS)
         return;
-    if (!scratch[0]->_mp_d)
-        for (auto &each : scratch)
-            mpf_init2(each, BITS);
+    begin_scratch();
     const struct fmb_prepared *const pair[2] = {swapped ? b : a, swapped ? a : b};
     struct kernel_traits traits = traits_of(kind);
+    struct checked_vertices vertices[2];
     check_rotations(a);
     check_rotations(b);
     check_gaps(pair, duration);
-    check_vertices(pair, duration);
+    get_vertices(pair, vertices);
+    check_hulls(vertices, duration);
     check_box(traits, pair, duration);
     traits.box = false;
     traits.axis_aligned = traits.dim == 3;
@@ -467,8 +489,9 @@ static const char not_checked[] =
     "\n"
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
     "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), points of contact\n"
-    "(BOXES.md, 12; support_gap.c), depths of hulls (support_depth.c), and what is done in\n"
-    "integers. In the filter and in gaps frames count as given, without errors.\n";
+    "(BOXES.md, 12; support_gap.c), depths of hulls (support_depth.c), positions within a window\n"
+    "(turn_decision.c), and what is done in integers. In the filter and in gaps frames count as\n"
+    "given, without errors; so do the vertices and directions of pairs that turn.\n";
 
 /* A fraction of a constant. */
 static void print_share(FILE *out, long double share)

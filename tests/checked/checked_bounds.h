@@ -18,6 +18,11 @@ void check_begin(void);
 /* Computes a pair of valid frames of one dimension by each job, in both orders. */
 void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration);
 
+/* Computes a pair of valid frames of one dimension, at least one of which has an end, as
+ * service/fmb/turn does. */
+void check_turning_pair(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                        double duration);
+
 /* The names of the constants; NULL past the last. */
 const char *check_constant(int index);
 

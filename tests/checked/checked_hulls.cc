@@ -41,10 +41,23 @@ typedef lanes rotation_two;
 #include "polytope.c"
 #include "support_search.c"
 #include "support_witness.c"
+#define fmb_pose_at checked_pose_at
+#include "motion.c"
+#include "turn_path.c"
 
 #undef double
 
 /* Not reached. */
+enum fmb_verdict support_round_verdict(const struct support_pair *, enum fmb_verdict cores,
+                                       const struct support_nearest *)
+{
+    return cores;
+}
+
+void frame_box(const struct fmb_frame *, number[2][FMB_DIM_MAX])
+{
+}
+
 unsigned support_list(const struct support_vertices *, const number[FMB_DIM_MAX], number,
                       uint16_t *)
 {
@@ -90,11 +103,14 @@ static void set_frame(const struct checked_vertices *from, struct checked_frame 
     frame.vertex_stride = FMB_HULL_VERTICES_MAX;
     frame.vertex_count = from->vertex_count;
     out->placement.orientation_count = from->orientation_count;
+    out->placement.end_count = from->end_count;
     for (int i = 0; i < 4; i++) {
         frame.spanning[i] = from->spanning[i];
         out->placement.orientation[i] = from->orientation[i];
+        out->placement.end_orientation[i] = from->end_orientation[i];
     }
     for (int axis = 0; axis < from->dim; axis++) {
+        out->placement.end_position[axis] = from->end_position[axis];
         frame.origin[axis] = from->origin[axis];
         out->placement.position[axis] = from->position[axis];
         out->placement.velocity[axis] = from->velocity[axis];
@@ -189,6 +205,10 @@ static void check_mesh(const struct support_pair *pair, const struct support_ver
 
 static struct checked_frame frame[2];
 
+/* What bounds the error of an orientation within the window, relative to its length (turn_path.h).
+ */
+#define ORIENTATION_ERROR (2.9 * 0x1p-53)
+
 void check_hulls(const struct checked_vertices from[2], plain_double duration)
 {
     enum { POINTS = 8 };
@@ -223,5 +243,72 @@ void check_hulls(const struct checked_vertices from[2], plain_double duration)
         if (nearest.outcome == GAP_KNOWN)
             check_witness(&pair, &nearest);
     }
+    arena_clear();
+}
+
+/* The box over an interval of the vertices, whose own box counts as given. */
+static void check_motion_box(const struct turn_path *path, int f, number lo, number hi)
+{
+    const struct support_vertices *vertices = &path->pair.view[f].vertices;
+    number q[2][4], position[2][FMB_DIM_MAX], box[2][FMB_DIM_MAX], low[FMB_DIM_MAX],
+        high[FMB_DIM_MAX];
+    for (int axis = 0; axis < vertices->dim; axis++) {
+        box[0][axis] = INFINITY, box[1][axis] = -INFINITY;
+        for (unsigned i = 0; i < vertices->count; i++) {
+            const number x = vertices->at[axis * vertices->stride + i];
+            box[0][axis] = fmin(box[0][axis], x), box[1][axis] = fmax(box[1][axis], x);
+        }
+    }
+    turn_path_at(path, f, lo, q[0], position[0]);
+    turn_path_at(path, f, hi, q[1], position[1]);
+    for (const number *each : q)
+        check_vector("ORIENTATION_ERROR", ORIENTATION_ERROR, each, 4,
+                     ORIENTATION_ERROR * sqrt((each[0] * each[0] + each[1] * each[1]) +
+                                              (each[2] * each[2] + each[3] * each[3])));
+    motion_box_between(q, position, vertices->dim, box, path->pair.view[f].reach, low, high);
+}
+
+/* The polynomials of a direction over an interval. */
+static void check_direction(const struct turn_path *path, const struct turn_corners *corners,
+                            number lo, number hi)
+{
+    struct turn_direction direction;
+    turn_direction_of(path->pair.view, corners, &direction);
+    for (number *m : direction.m)
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            m[axis] = given(m[axis]);
+    if (vec3_dot(direction.m[0], direction.m[0]) > 0 &&
+        (direction.of < 2 || vec3_dot(direction.m[1], direction.m[1]) > 0))
+        turn_distance(path, &direction, lo, hi);
+}
+
+void check_turns(const struct checked_vertices from[2], plain_double duration)
+{
+    static const plain_double interval[][2] = {
+        {0, 1}, {0.375, 0.5}, {0x1.8p-3, 0x1.8p-3 + 0x1p-40}};
+    struct turn_path path;
+    for (int f = 0; f < 2; f++)
+        set_frame(&from[f], &frame[f]);
+    const struct frame_pair frames = {
+        {&frame[0].frame, &frame[0].placement}, {&frame[1].frame, &frame[1].placement}, duration};
+    turn_path_set(&frames, &path);
+    give_views(&path.pair);
+    for (struct support_view &view : path.pair.view)
+        view.slack = 0;
+    const unsigned last[2] = {path.pair.view[0].vertices.count - 1,
+                              path.pair.view[1].vertices.count - 1};
+    for (const plain_double *each : interval)
+        for (int of = 0; of < 3 && path.pair.usable; of++) {
+            if (of < 2)
+                check_motion_box(&path, of, each[0], each[1]);
+            if (of < path.pair.dim && last[of % 2] > 0 && last[1] > 0) {
+                const unsigned middle = (last[of % 2] + 1) / 2;
+                const struct turn_corners corners = {
+                    of,
+                    {0, (uint16_t) (of < 2 ? middle : last[0]), (uint16_t) (of < 2 ? last[of] : 0),
+                     (uint16_t) last[1]}};
+                check_direction(&path, &corners, each[0], each[1]);
+            }
+        }
     arena_clear();
 }

@@ -14,9 +14,15 @@ struct checked_vertices {
     unsigned vertex_count, vertex_stride, spanning[4];
     double origin[3], component[3][3], slack, reach;
     double position[3], velocity[3], orientation[4];
+    int end_count;
+    double end_position[3], end_orientation[4];
 };
 
 void check_hulls(const struct checked_vertices pair[2], double duration);
+
+/* The same of a pair in which a placement has an end: poses, boxes and polynomials over intervals,
+ * with the bounds of service/fmb/turn and of motion.h. */
+void check_turns(const struct checked_vertices pair[2], double duration);
 
 #ifdef __cplusplus
 }

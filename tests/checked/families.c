@@ -1,10 +1,21 @@
 #include "families.h"
 
 #include "checked_bounds.h"
+#include "round.h"
 #include "trial.h"
+#include "turn_family.h"
+
+const struct family *family_checked_at(size_t index)
+{
+    size_t others = 0;
+    while (family_all_at(others))
+        others++;
+    return index < others ? family_all_at(index) : family_turning_at(index - others);
+}
 
 static void check_question(const struct question *question)
 {
+    const bool turns = question->a.ending || question->b.ending;
     struct trial trial;
     struct fmb_prepared frame[2][SOLID_FRAMES_MAX];
     trial_begin(question, &trial);
@@ -13,7 +24,8 @@ static void check_question(const struct question *question)
     fmb_prepare(&trial.pair[0].b, 0, of_b, frame[1]);
     for (unsigned i = 0; i < of_a; i++)
         for (unsigned j = 0; j < of_b; j++)
-            check_pair(&frame[0][i], &frame[1][j], question->duration);
+            (turns ? check_turning_pair : check_pair)(&frame[0][i], &frame[1][j],
+                                                      question->duration);
     trial_end(&trial);
 }
 

@@ -207,6 +207,8 @@ void motion_box_between(const double q[2][4], const double position[2][FMB_DIM_M
                 centre += entry * m[i];
                 half += fabs(entry) * h[i];
             }
+            CHECK_BOUND(MOTION_BOX_ERROR, !(ratio < 0x1p40), centre - half, error);
+            CHECK_BOUND(MOTION_BOX_ERROR, !(ratio < 0x1p40), centre + half, error);
             low[axis] = fmin(low[axis], centre - (half + error));
             high[axis] = fmax(high[axis], centre + (half + error));
         }

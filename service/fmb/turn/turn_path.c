@@ -161,10 +161,11 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
         get_edge(&view[1], &v[2], out->m[1]);
         return;
     }
+    const uint16_t other[2] = {v[0], v[2]};
     double edge[2][FMB_DIM_MAX] = {{0}, {0, 0, 1}};
     get_edge(&view[corners->of], &v[0], edge[0]);
     if (view->vertices.dim == 3)
-        get_edge(&view[corners->of], (const uint16_t[2]){v[0], v[2]}, edge[1]);
+        get_edge(&view[corners->of], other, edge[1]);
     vec3_cross(edge[0], edge[1], out->m[0]);
     if (view->vertices.dim == 2)
         for (int axis = 0; axis < 2; axis++)
@@ -403,6 +404,8 @@ double turn_distance(const struct turn_path *path, const struct turn_direction *
     for (int k = 0; k < 6; k++) {
         const double certain = of.value[k] - binomial[k] * of.error;
         const double off = binomial[k] * of.error / path->pair.reach;
+        CHECK_BOUND(TURN_ERROR, false, of.value[k], binomial[k] * of.error);
+        CHECK_BOUND(TURN_ERROR, direction->of == 2, of.length[k], off);
         const double divisor = (negative ? of.below[k] - off : of.length[k] + off);
         if (!(divisor > 0))
             return -INFINITY;
