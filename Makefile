@@ -26,6 +26,7 @@
 #   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
 #   V=1                            shows commands, not one line a file
+#   BUILD=FOLDER                   builds programs there, not in build/, also from a tree that is read-only
 #   HELP_FROM=build                whose programs print the manual; for those of another machine
 #   PYTHONDIR                      where fmb.py goes
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual; flags that change numbers are left out
@@ -49,11 +50,12 @@ PYTHONDIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell $(pytho
 OBJCOPY ?= objcopy
 
 # The default build lies in build/, others in build/VARIANT.
+BUILD := build
 compiler := $(notdir $(firstword $(CC)))
 variant := $(MODE)$(if $(filter-out gcc cc,$(compiler)),-$(compiler))$(INSTRUCTIONS:%=-%)
-B := $(if $(filter release,$(variant)),build,build/$(variant))
-O := build/obj/$(variant)
-GEN := build/msgs
+B := $(if $(filter release,$(variant)),$(BUILD),$(BUILD)/$(variant))
+O := $(BUILD)/obj/$(variant)
+GEN := $(BUILD)/msgs
 
 .PHONY: all
 all: programs manual
@@ -330,7 +332,8 @@ page_scripts := $(template)data.js $(template)licence.js $(three)three.min.js \
 	$(addprefix $(template),solid.js scene.js lanes.js table.js player.js main.js)
 page_hash = sha256-$$({ echo; cat $1; } | sha256sum | cut -c 1-64 | tr a-f A-F | \
 	basenc --base16 -d | base64)
-build/page/page.html: $(template)page.html $(template)page.css $(filter $(template)%,$(page_scripts)) Makefile
+page := $(BUILD)/page/page.html
+$(page): $(template)page.html $(template)page.css $(filter $(template)%,$(page_scripts)) Makefile
 	@mkdir -p $(@D)
 	@for file in $(page_scripts); do [ -f $$file ] || \
 		{ echo "there is no $$file: make deps installs it" >&2; exit 1; }; done
@@ -341,8 +344,8 @@ build/page/page.html: $(template)page.html $(template)page.css $(filter $(templa
 		-e '/^@STYLE@$$/{r $(template)page.css' -e 'd;}' \
 		-e '/^@SCRIPT@$$/{r $(@D)/scripts' -e 'd;}' $(template)page.html > $@
 	@[ "$$(grep -c '@[A-Z_]*@' $@)" = 1 ] # @DATA@
-$(O)/clients/page/page.o: build/page/page.html
-$(O)/clients/page/page.o: flags += -DPAGE_FILE='"build/page/page.html"'
+$(O)/clients/page/page.o: $(page)
+$(O)/clients/page/page.o: flags += -DPAGE_FILE='"$(page)"'
 
 # The picture of README.md, drawn by chromium. Some characters of a path are escaped in an address.
 url = $(subst ?,%3F,$(subst #,%23,$(subst $() ,%20,$(subst %,%25,$1))))
@@ -518,7 +521,7 @@ packages_deps-test := $(packages_deps) libcmocka-dev bats jq clang clang-format 
 packages_deps-bench := $(packages_deps) g++ jq libccd-dev libfcl-dev libbullet-dev \
 	libcgal-dev libmpfr-dev
 packages_deps-fuzz := $(packages_deps) clang libclang-rt-dev lld llvm afl++
-packages_deps-deb := $(packages_deps) build-essential debhelper dh-python python3 lintian bats debootstrap
+packages_deps-deb := $(packages_deps) build-essential debhelper dh-python python3 lintian bats debootstrap faketime
 packages_deps-aarch64 := $(packages_deps) gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
 deps := deps deps-test deps-bench deps-fuzz deps-deb deps-aarch64
 

@@ -176,6 +176,14 @@ suffices() {
     suffices deps-aarch64
 }
 
+@test "with BUILD, programs are built there, and nothing is written into the tree" {
+    touch "$BATS_TEST_TMPDIR/before"
+    make_there deps BUILD="$BATS_TEST_TMPDIR/elsewhere" programs manual
+    [ "$status" = 0 ]
+    for file in fmb fmbd libfmb.a page/page.html man/fmb.1; do [ -e "$BATS_TEST_TMPDIR/elsewhere/$file" ]; done
+    [ -z "$(find "$tree" -newer "$BATS_TEST_TMPDIR/before")" ]
+}
+
 @test "'make deb' removes nothing but its own folder, wherever the tree is" {
     mkdir -p "$tree/build/deb/old"
     make_there deps-deb deb

@@ -38,10 +38,16 @@ get() {
     inside fmb query --local --box /fmb/$scene | cmp - <("$FMB_BUILD/fmb" query --local --box $scene)
     "$FMB_BUILD/netns" chroot "$root" sh -c "fmbd 2> log & until grep -q ready log; do sleep 0.1; done
         fmb query --box /fmb/$scene; kill \$!; wait" | cmp - <("$FMB_BUILD/fmb" query --local --box $scene)
+    # A scene with a body that turns, and a path of a robot, of the examples in the package.
+    examples=usr/share/doc/fmb/examples
+    inside fmb query --local --box --point /$examples/turn.json | cmp - <("$FMB_BUILD/fmb" query --local --box --point clients/demo/turn.json)
+    head -n 4 "$root/$examples/robot/path.csv" > "$root/start.csv"
+    inside fmb path /$examples/robot/robot.urdf --joints-csv /start.csv --with /$examples/robot/world.json --ignore base,table --proof /proof |
+        grep '^free: edges: 2, free: 2;'
+    inside fmb-check-path /proof
     [ -f "$root/lib/systemd/system/fmbd.service" ]
     grep -q '^ExecStart="/usr/bin/fmbd"$' "$root/lib/systemd/system/fmbd.service"
     [ -z "$(find "$root/etc/systemd" -name 'fmbd*')" ]
-    inside fmb-check-path --help > /dev/null
     for file in fmb/README.md fmb/CHANGELOG.md fmb/examples/table.json fmb/examples/robot/robot.urdf; do
         [ "$(find "$root/usr/share/doc/$file"* -type f)" ]
     done
@@ -74,9 +80,51 @@ get() {
     [ "$(inside python3 -c 'import fmb; print(fmb.Scene([fmb.box([1, 1])] * 2).pair(0, 1, 0).verdict.name)')" = OVERLAPPING ]
 }
 
+@test "an earlier version is upgraded, and an enabled unit stays enabled" {
+    # The same packages with a lower version, and a file that later ones lack.
+    version=$(dpkg-deb -f build/deb/fmb_*.deb Version)
+    mkdir "$root/fmb/old"
+    for file in build/deb/*.deb; do
+        old=$BATS_TEST_TMPDIR/$(basename "$file" .deb)
+        dpkg-deb -R "$file" "$old"
+        sed -i "/^\(Version\|Depends\|Recommends\): /s/\b${version//./\\.}/0.0.9/g" "$old/DEBIAN/control"
+        mkdir -p "$old/usr/share/fmb-0.0.9"
+        echo > "$old/usr/share/fmb-0.0.9/${file##*/}"
+        dpkg-deb -b "$old" "$root/fmb/old" > /dev/null
+    done
+    get --allow-downgrades $(cd "$root" && printf './%s ' fmb/old/*.deb)
+    [ "$(ls "$root/usr/share/fmb-0.0.9")" = "$(cd build/deb && ls *.deb)" ]
+    [ "$(inside dpkg-query -W -f '${Version}\n' fmbd)" = 0.0.9 ]
+    inside deb-systemd-helper enable fmbd.service
+    get $(cd "$root" && printf './%s ' fmb/*.deb)
+    [ ! -e "$root/usr/share/fmb-0.0.9" ]
+    [ "$(inside dpkg-query -W -f '${Version}\n' fmb fmbd libfmb-dev 'libfmb*[0-9]' python3-fmb | sort -u)" = "$version" ]
+    [ -L "$root/etc/systemd/system/multi-user.target.wants/fmbd.service" ]
+    inside fmb query --local --box /usr/share/doc/fmb/examples/table.json > /dev/null
+    # Libraries of two minor versions have no file in common.
+    for file in build/deb/libfmb*[0-9]_*.deb; do
+        [ -z "$(dpkg-deb -c "$file" | grep -v '/$' | grep -vF "${version%.*}")" ]
+    done
+}
+
 @test "nothing remains when the packages are removed" {
+    inside apt-get remove -q -y fmbd
     inside apt-get purge -q -y fmb fmbd 'libfmb*' python3-fmb
     [ -z "$(find "$root" -xdev -path "$root/fmb" -prune -o -path "$root/proc" -prune -o -name '*fmb*' -print)" ]
+}
+
+@test "the packages have the same bytes in every folder, locale and time zone, at any time and for every umask" {
+    # The files of a tarball have the time of the commit.
+    mkdir "$BATS_TEST_TMPDIR/another folder"
+    tar --exclude=./build --exclude=./.git -c . | tar -x -C "$BATS_TEST_TMPDIR/another folder"
+    touch -d "@$(dpkg-parsechangelog -l build/deb/fmb-*/debian/changelog -S Timestamp)" "$BATS_TEST_TMPDIR/another folder/Makefile"
+    (
+        cd "$BATS_TEST_TMPDIR/another folder"
+        umask 077
+        TZ=Asia/Kathmandu LC_ALL=C CCACHE_DISABLE=1 DEB_BUILD_OPTIONS=parallel=1 faketime -f +400d \
+            env -u MAKEFLAGS -u MAKELEVEL make deb > log 2>&1 || { tail -n 40 log; return 1; }
+    )
+    for file in build/deb/*.deb; do cmp "$file" "$BATS_TEST_TMPDIR/another folder/$file"; done
 }
 
 @test "the first command of the README installs, builds and answers, for a user with sudo" {
