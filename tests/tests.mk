@@ -93,7 +93,7 @@ wraps_of_work := $(call wraps,$(addprefix __gmp,z_mul z_mul_si z_mul_2exp z_addm
 	integer_ratio_round)
 wraps_test_engine_work := $(wraps_of_work) $(call wraps,limbs_span_of)
 wraps_test_hull_work := $(wraps_of_work) $(call wraps,support_max support_list support_integers_place \
-	certificate_write_number)
+	support_integers_vertex certificate_write_number)
 wraps_test_log_read := $(call wraps,pread64)
 wraps_test_log_write := $(call wraps,fsync)
 wraps_test_log_cut := $(call wraps,page_take pread64)

@@ -8,6 +8,7 @@
  *     products   of limbs in integers: 0.5 ns each (exact_work.h);
  *     placed     vertices in integers: 1,000 ns each, beside their products, measured with numbers
  *                of the whole range;
+ *     read       vertices that are turned into integers but not placed: 300 ns each;
  *     written    limbs of fractions that a certificate states: 600 ns each, to reduce the fraction
  *                and to print it, measured with 8 to 64 limbs.
  *
@@ -29,11 +30,12 @@
 
 enum { VERTICES = FMB_HULL_VERTICES_MAX, NUMBERS = FMB_DIM_MAX * VERTICES };
 
-static const double ns_of_vertex = 0.5, ns_of_product = 0.5, ns_of_placed = 1e3,
+static const double ns_of_vertex = 0.5, ns_of_product = 0.5, ns_of_placed = 1e3, ns_of_read = 300,
                     ns_of_written = 600;
-static const double ns_most = 1e6 / 1.5, ns_most_of_pair = 60e6 / 1.5;
+static const double ns_most = 1e6 / 1.5, ns_most_of_pair = 60e6 / 1.5,
+                    ns_most_of_turning = 700e6 / 1.5;
 
-static double scanned, placed, written;
+static double scanned, placed, read, written;
 
 struct support __real_support_max(const struct support_vertices *vertices,
                                   const double n[FMB_DIM_MAX]);
@@ -55,6 +57,17 @@ void __wrap_support_integers_place(const struct support_integers *integers, int 
 {
     placed++;
     __real_support_integers_place(integers, f, i, out);
+}
+
+void __real_support_integers_vertex(const struct support_integers *integers, int f, unsigned i,
+                                    mpz_t out[3]);
+void __wrap_support_integers_vertex(const struct support_integers *integers, int f, unsigned i,
+                                    mpz_t out[3]);
+void __wrap_support_integers_vertex(const struct support_integers *integers, int f, unsigned i,
+                                    mpz_t out[3])
+{
+    read++;
+    __real_support_integers_vertex(integers, f, i, out);
 }
 
 void __real_certificate_write_number(struct certificate_writer *writer, const mpq_t number);
@@ -79,7 +92,7 @@ unsigned __wrap_support_list(const struct support_vertices *vertices, const doub
 static double work(void)
 {
     return ns_of_vertex * scanned + ns_of_product * exact_work + ns_of_placed * placed +
-           ns_of_written * written;
+           ns_of_read * read + ns_of_written * written;
 }
 
 /* ---- Hulls ---- */
@@ -143,6 +156,28 @@ static void put(struct draw *draw, enum place place, double unit, struct large l
     }
 }
 
+/* Gives both hulls an end in place of a velocity. On its face, the second turns about the axis of
+ * both, and slides. */
+static void give_ends(struct draw *draw, enum place place, double unit, struct large large[2])
+{
+    for (int f = 0; f < 2; f++) {
+        struct fmb_placement *at = &large[f].at;
+        memset(at->velocity, 0, sizeof at->velocity);
+        at->end_count = 7;
+        for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+            at->end_position[axis] =
+                place == RESTING ? at->position[axis] : unit * draw_uniform(draw, -1, 1);
+        for (int k = 0; k < 4; k++)
+            at->end_orientation[k] = at->orientation[k] + draw_uniform(draw, -0.2, 0.2);
+        if (place == RESTING) {
+            const double q[2][4] = {{1, 2, 3, 4}, {-2, 7, 4, 9}}, x[FMB_DIM_MAX] = {2, -1, -6};
+            memcpy(at->end_orientation, q[f], sizeof q[f]);
+            for (int axis = 0; axis < FMB_DIM_MAX && f == 1; axis++)
+                at->end_position[axis] += unit / 8 * x[axis];
+        }
+    }
+}
+
 /* ---- Steps ---- */
 
 /* Returns the greatest work of a step, in nanoseconds. */
@@ -163,7 +198,16 @@ static double work_of_certificate(const struct large large[2], int *steps)
     return most;
 }
 
-static void assert_short(const char *name, const int range[2], work_of_step *step)
+/* most: nanoseconds of a pair. */
+static double work_of_turning_certificate(const struct large large[2], int *steps)
+{
+    const struct fmb_placement placements[2] = {large[0].at, large[1].at};
+    bool made;
+    return work_of_certificate_step(placements, 1, work, steps, &made);
+}
+
+static void assert_short(const char *name, const int range[2], bool turns, double most_allowed,
+                         work_of_step *step)
 {
     static struct large large[2];
     struct draw draw;
@@ -175,6 +219,8 @@ static void assert_short(const char *name, const int range[2], work_of_step *ste
         make_large(&draw, shape, range, &large[0]);
         make_large(&draw, shape, range, &large[1]);
         put(&draw, place, shape < HUGE_BALL ? 1 : huge_unit, large);
+        if (turns)
+            give_ends(&draw, place, shape < HUGE_BALL ? 1 : huge_unit, large);
         const double before = work(), of_turn = step(large, &steps);
         most_of_pair = fmax(most_of_pair, work() - before);
         if (turn < SHAPES * PLACES)
@@ -182,21 +228,35 @@ static void assert_short(const char *name, const int range[2], work_of_step *ste
         most = fmax(most, of_turn);
     }
     printf("# %d steps, at most %.0f ns; a pair at most %.0f ns\n", steps, most, most_of_pair);
-    assert_true(most <= ns_most && most_of_pair <= ns_most_of_pair);
+    assert_true(most <= ns_most && most_of_pair <= most_allowed);
     assert_true(scanned > 0 && exact_work > 0 && placed > 0);
 }
 
 static void steps_are_short(void **state)
 {
     static const int whole[2] = {-1000, 900};
-    assert_short("steps_are_short", whole, work_of_scene);
+    assert_short("steps_are_short", whole, false, ns_most_of_pair, work_of_scene);
+}
+
+static void steps_of_turning_hulls_are_short(void **state)
+{
+    static const int wide[2] = {-500, 500};
+    assert_short("steps_of_turning_hulls_are_short", wide, true, ns_most_of_turning, work_of_scene);
+}
+
+static void steps_of_certificates_of_turning_hulls_are_short(void **state)
+{
+    static const int wide[2] = {-110, 100};
+    assert_short("steps_of_certificates_of_turning_hulls_are_short", wide, true, ns_most_of_turning,
+                 work_of_turning_certificate);
 }
 
 /* Exponents that together with the orientations span nearly the bits that a certificate may. */
 static void steps_of_certificates_are_short(void **state)
 {
     static const int range[2] = {-110, 100};
-    assert_short("steps_of_certificates_are_short", range, work_of_certificate);
+    assert_short("steps_of_certificates_are_short", range, false, ns_most_of_pair,
+                 work_of_certificate);
     assert_true(written > 0);
 }
 
@@ -242,7 +302,10 @@ static void overlaps_in_general_position_need_no_integers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_are_short), cmocka_unit_test(steps_of_certificates_are_short),
+        cmocka_unit_test(steps_are_short),
+        cmocka_unit_test(steps_of_certificates_are_short),
+        cmocka_unit_test(steps_of_turning_hulls_are_short),
+        cmocka_unit_test(steps_of_certificates_of_turning_hulls_are_short),
         cmocka_unit_test(few_vertices_of_huge_hulls_get_a_value_in_integers),
         cmocka_unit_test(overlaps_in_general_position_need_no_integers)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -30,6 +30,23 @@ void integer_set(mpz_t out, struct dyadic x, long unit)
         mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent - unit));
 }
 
+void integer_round_vector(mpz_t v[3], double out[3])
+{
+    long exponent[3], largest = 0;
+    bool any = false;
+    for (int axis = 0; axis < 3; axis++) {
+        out[axis] = mpz_get_d_2exp(&exponent[axis], v[axis]);
+        if (out[axis] != 0 && (!any || exponent[axis] > largest)) {
+            largest = exponent[axis];
+            any = true;
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        const long down = largest - exponent[axis];
+        out[axis] = out[axis] == 0 || down > 1100 ? 0 : ldexp(out[axis], (int) -down - 4);
+    }
+}
+
 void integer_set_sum(mpz_t out, double x, double y, long unit)
 {
     mpz_t other;

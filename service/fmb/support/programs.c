@@ -266,26 +266,6 @@ static void swap_points(struct point *x, struct point *y)
 
 /* ---- Pricing ---- */
 
-/* n := e->body, scaled to a largest coordinate in [1/32, 1/16), so that no sum of products
- * overflows, and |n| < 1/9. Each coordinate is truncated to 53 bits, off by at most 2^-52 of
- * itself, and by 2^-1074 if it is far smaller than the largest. */
-static void round_direction(const struct programs *e, double n[FMB_DIM_MAX])
-{
-    long exponent[3], largest = 0;
-    bool any = false;
-    for (int axis = 0; axis < 3; axis++) {
-        n[axis] = mpz_get_d_2exp(&exponent[axis], e->body[axis]);
-        if (n[axis] != 0 && (!any || exponent[axis] > largest)) {
-            largest = exponent[axis];
-            any = true;
-        }
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        const long down = largest - exponent[axis];
-        n[axis] = n[axis] == 0 || down > 1100 ? 0 : ldexp(n[axis], (int) -down - 4);
-    }
-}
-
 /* e->body := n in body coordinates, times a positive factor. */
 static void turn_back(struct programs *e, const struct side *side, mpz_t n[3])
 {
@@ -312,7 +292,7 @@ static unsigned price_side(struct programs *e, int f, bool reduce)
     turn_back(e, side, e->normal[f]);
     if (integer_is_zero(e->body))
         return best;
-    round_direction(e, n);
+    integer_round_vector(e->body, n);
     const unsigned count = support_view_list(side->view, n, side->face, side->count, listed);
     for (unsigned k = 0; k < count; k++) {
         const unsigned i = listed[k];

@@ -18,6 +18,7 @@ enum {
     VERTICES_OF_LOOK = 64, /* so many vertices cost one more in either */
     LOOKS_BOUNDED = 200,
     LOOKS_STEP = 64,
+    CORNERS_STEP = 64,  /* directions by vertices that a step tries in doubles */
     DIRECTIONS_MAX = 20 /* tried towards an end of the contact */
 };
 
@@ -159,28 +160,21 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
         }
 }
 
-/* Drops the directions that, in doubles, clearly do not separate the frames over an interval. */
-static void filter_corners(struct turn_decision *decision, struct turn_interval interval)
+/* Returns whether direction k might separate the frames over an interval, by doubles. */
+static bool may_separate(const struct turn_decision *decision, unsigned k,
+                         struct turn_interval interval)
 {
-    const struct support_view *view = decision->path.pair.view;
-    unsigned kept = 0;
-    for (unsigned k = 0; k < decision->corner_count; k++) {
-        const struct turn_corners corners = decision->corners[k];
-        struct turn_direction direction = {.of = corners.of};
-        turn_direction_of(view, &corners, &direction);
-        if (decision->path.pair.usable &&
-            !turn_may_separate(&decision->path, &direction, decision->sign[k], interval.lo,
-                               interval.hi))
-            continue;
-        decision->corners[kept] = corners;
-        decision->sign[kept++] = decision->sign[k];
-    }
-    decision->corner_count = kept;
+    struct turn_direction direction;
+    if (!decision->path.pair.usable)
+        return true;
+    turn_direction_of(decision->path.pair.view, &decision->corners[k], &direction);
+    return turn_may_separate(&decision->path, &direction, decision->sign[k], interval.lo,
+                             interval.hi);
 }
 
-/* Lists the directions to be tried over an interval. Frames with a radius have none: directions of
- * their cores do not decide them. */
-static void begin_corners(struct turn_decision *decision, struct turn_interval interval)
+/* Lists the directions to be tried. Frames with a radius have none: directions of their cores do
+ * not decide them. */
+static void begin_corners(struct turn_decision *decision)
 {
     struct turn_features of[2];
     const int dim = decision->path.pair.dim;
@@ -201,14 +195,10 @@ static void begin_corners(struct turn_decision *decision, struct turn_interval i
                         add_corners(decision, f, on->vertex[i], on->vertex[j], on->vertex[k], 0);
             }
     }
-    filter_corners(decision, interval);
-    const unsigned faces = decision->corner_count;
     for (unsigned i = 0; i < of[0].edges && dim == 3; i++)
         for (unsigned j = 0; j < of[1].edges; j++)
             add_corners(decision, 2, of[0].vertex[of[0].edge[i][0]], of[0].vertex[of[0].edge[i][1]],
                         of[1].vertex[of[1].edge[j][0]], of[1].vertex[of[1].edge[j][1]]);
-    if (decision->corner_count > faces)
-        filter_corners(decision, interval);
     if (!decision->has_exact) {
         turn_exact_begin(&decision->path, &decision->exact);
         decision->has_exact = true;
@@ -356,20 +346,39 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
     else if (decision->bounded)
         decision->exhausted = true;
     else
-        begin_corners(decision, interval);
+        begin_corners(decision);
+}
+
+/* Frames that rest on each other touch at both ends of the interval and need no other direction. So
+ * the ends are examined at the first outcome of this kind. */
+static void take_outcome(struct turn_decision *decision, enum turn_outcome outcome)
+{
+    if (outcome == TURN_REST && decision->outcome == TURN_OPEN)
+        decision->stage = TURN_ENDS;
+    if (outcome == TURN_APART || outcome == TURN_CLEAN || decision->outcome == TURN_OPEN)
+        decision->outcome = outcome;
 }
 
 static void try_corner(struct turn_decision *decision, struct turn_interval interval)
 {
+    struct turn_exact *exact = &decision->exact;
+    enum turn_outcome outcome;
+    if (exact->trial) {
+        if (turn_exact_step(exact, &outcome))
+            take_outcome(decision, outcome);
+        return;
+    }
     if (decision->corner < decision->corner_count && decision->outcome != TURN_APART &&
         (decision->outcome != TURN_CLEAN || decision->proof)) {
-        const unsigned k = decision->corner++;
-        decision->looks += LOOKS_DIRECTION + vertices_of(decision) / VERTICES_OF_LOOK;
-        const enum turn_outcome outcome = turn_exact_outcome(
-            &decision->exact, &decision->corners[k], decision->sign[k], interval.lo, interval.hi);
-        if (outcome == TURN_APART || outcome == TURN_CLEAN ||
-            (outcome == TURN_REST && decision->outcome == TURN_OPEN))
-            decision->outcome = outcome;
+        for (int n = 0; n < CORNERS_STEP && decision->corner < decision->corner_count; n++) {
+            const unsigned k = decision->corner++;
+            if (!may_separate(decision, k, interval))
+                continue;
+            decision->looks += LOOKS_DIRECTION + vertices_of(decision) / VERTICES_OF_LOOK;
+            turn_exact_try(exact, &decision->corners[k], decision->sign[k], interval.lo,
+                           interval.hi);
+            break;
+        }
         return;
     }
     if (decision->outcome == TURN_APART)
@@ -396,6 +405,11 @@ static void look_at_ends(struct turn_decision *decision, struct turn_interval in
         return;
     if (at_hi != FMB_SEPARATED && add_contact(decision, interval.hi, at_hi, interval))
         return;
+    if (rests && decision->corner < decision->corner_count &&
+        (at_lo == FMB_SEPARATED || at_hi == FMB_SEPARATED)) {
+        decision->stage = TURN_CORNER;
+        return;
+    }
     const bool both = at_lo != FMB_SEPARATED && at_hi != FMB_SEPARATED;
     const bool any = at_lo != FMB_SEPARATED || at_hi != FMB_SEPARATED || inside != FMB_SEPARATED;
     if (both || (!rests && (any || !decision->proof))) {
@@ -555,7 +569,7 @@ static void set_touching_gap(struct turn_decision *decision, double s, struct fm
     unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
     if (vec3_dot(decision->toward, decision->toward) > 0)
         count += turn_directions(path, decision->toward, 0, &direction[1]) > 0;
-    begin_corners(decision, (struct turn_interval){s, s});
+    begin_corners(decision);
     for (unsigned k = 0; k < count + decision->corner_count; k++) {
         double n[FMB_DIM_MAX];
         if (k >= count)
@@ -724,6 +738,7 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->phase = TURN_VERDICT;
     out->stage = TURN_LOOK;
     out->programs = NULL;
+    out->exact.trial = NULL;
     out->looks = out->next_known = 0;
     out->looked = -1;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;

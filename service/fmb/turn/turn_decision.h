@@ -23,8 +23,9 @@
  * Box: the union, over pieces of the contact, of the intersections of the boxes of both frames.
  * Gap: turn_gap.h.
  *
- * Steps: a search in doubles takes microseconds, one exact direction of a small pair tens of them,
- * a step of the programs less than a millisecond. No shared state. */
+ * Steps: a search in doubles takes microseconds, an exact direction of a small pair tens of them; a
+ * step of a direction of large hulls, or of the programs, takes less than a millisecond. No shared
+ * state. */
 #ifndef FMB_TURN_DECISION_H
 #define FMB_TURN_DECISION_H
 
@@ -33,7 +34,7 @@
 
 struct programs;
 
-enum { TURN_DEPTH = 50, TURN_STACK = TURN_DEPTH + 4, TURN_KNOWN = 8, TURN_CORNERS = 512 };
+enum { TURN_DEPTH = 50, TURN_STACK = TURN_DEPTH + 4, TURN_KNOWN = 8, TURN_CORNERS = 530 };
 
 struct turn_interval {
     double lo, hi;

@@ -12,6 +12,7 @@
 #include "turn_exact.h"
 
 #include "integer.h"
+#include "memory.h"
 
 /* ---- Integers ---- */
 
@@ -44,8 +45,12 @@ void turn_exact_begin(const struct turn_path *path, struct turn_exact *out)
     mpz_clears(other[0], other[1], other[2], NULL);
 }
 
+static void end_trial(struct turn_exact *exact);
+
 void turn_exact_end(struct turn_exact *exact)
 {
+    if (exact->trial)
+        end_trial(exact);
     support_integers_each(&exact->integers, mpz_clear);
     INTEGER_EACH_FROM(q, exact, mpz_clear);
 }
@@ -63,8 +68,21 @@ struct quadratic {
 /* All numbers of one direction over one interval. */
 struct work {
     struct quadratic of[2];
-    vector difference[2], m[2], n[6], c[2][6], part, vertex;
-    mpz_t own, value[6], least, scratch, other;
+    vector difference[2], m[2], n[6], c[2][6], part, x, vertex;
+    mpz_t norm[6], value[6], least, scratch, other;
+};
+
+/* A direction over an interval, in progress. */
+struct turn_trial {
+    struct work work;
+    int of;               /* as of struct turn_corners */
+    mp_bitcnt_t bits;     /* lengths are scaled by 2^bits */
+    bool splits;          /* n . x is not constant on the frame of n, or a product is never 0 */
+    unsigned scan, scans; /* the present scan, and all; no scans: the direction is 0 */
+    int f, way;           /* of the present scan: the frame; 1 for the least, -1 for the greatest */
+    unsigned next, count; /* listed vertices: the next, and all */
+    bool constant;        /* x . v is the same for all vertices so far */
+    uint16_t listed[FMB_HULL_VERTICES_MAX];
 };
 
 /* out := (2^bits - i) x + i y */
@@ -182,70 +200,37 @@ void turn_exact_direction(const struct turn_exact *exact, const struct turn_corn
     integer_each(&work, sizeof work, mpz_clear);
 }
 
-/* value += factor times 2^bits times the least (way > 0) or minus the greatest x . v over the
- * vertices of a frame. Returns whether x . v is constant. */
-static bool add_least(const struct turn_exact *exact, int f, vector x, int way, const mpz_t factor,
-                      mp_bitcnt_t bits, struct work *work, mpz_t value)
+/* Sets the coefficients of a direction fixed in frame f, without those of the vertices. */
+static void begin_fixed(struct turn_trial *trial, int f)
 {
-    const unsigned count = exact->path->pair.view[f].vertices.count;
-    bool constant = true;
-    for (unsigned i = 0; i < count; i++) {
-        support_integers_vertex(&exact->integers, f, i, work->vertex);
-        mpz_set_ui(work->other, 0);
-        add_dot(x, work->vertex, work->other);
-        if (i > 0)
-            constant = constant && mpz_cmp(work->other, work->least) == 0;
-        if (i == 0 || (way > 0 ? mpz_cmp(work->other, work->least) < 0
-                               : mpz_cmp(work->other, work->least) > 0))
-            mpz_set(work->least, work->other);
-    }
-    mpz_mul_2exp(work->least, work->least, bits);
-    if (factor)
-        mpz_mul(work->least, work->least, factor);
-    (way > 0 ? mpz_add : mpz_sub)(value, value, work->least);
-    return constant;
-}
-
-/* Sets the polynomial of a direction fixed in a frame. Returns whether n . x is not constant on
- * that frame. */
-static bool set_fixed(const struct turn_exact *exact, int f, mp_bitcnt_t bits, struct work *work)
-{
+    struct work *work = &trial->work;
     struct quadratic *own = &work->of[f], *other = &work->of[!f];
-    mpz_t norm[6], o[4];
-    bool constant = true;
-    integer_each(norm, sizeof norm, mpz_init);
+    mpz_t o[4];
     integer_each(o, sizeof o, mpz_init);
     for (int i = 0; i < 3; i++) {
         apply(own->matrix[i], work->m[0], work->n[i]);
         for (int j = 0; j < 3; j++) {
             add_transposed(other->matrix[j], work->n[i], work->c[0][i + j]);
-            mpz_addmul(norm[i + j], own->norm[i], other->norm[j]);
+            mpz_addmul(work->norm[i + j], own->norm[i], other->norm[j]);
         }
         for (int j = 0; j < 2; j++)
             add_dot(work->n[i], work->difference[j], o[i + j]);
     }
     raise_degree(work->c[0]);
     for (int k = 5; k > 0; k--)
-        mpz_add(norm[k], norm[k], norm[k - 1]);
+        mpz_add(work->norm[k], work->norm[k], work->norm[k - 1]);
     for (int k = 0; k < 6; k++)
         for (int i = 0; i < 4; i++)
             if (k >= i && k - i < 3)
                 mpz_addmul(work->value[k], o[i], other->norm[k - i]);
-    for (int k = 0; k < 6; k++) {
-        constant =
-            add_least(exact, f, work->m[0], f == 0 ? -1 : 1, norm[k], bits, work, work->value[k]);
-        add_least(exact, !f, work->c[0][k], f == 0 ? 1 : -1, NULL, bits, work, work->value[k]);
-    }
-    integer_each(norm, sizeof norm, mpz_clear);
     integer_each(o, sizeof o, mpz_clear);
-    return !constant;
 }
 
-/* Sets the polynomial of a product of edges. Returns whether the product is certainly never 0. */
-static bool set_product(const struct turn_exact *exact, mp_bitcnt_t bits, struct work *work)
+/* The same for a product of edges. */
+static void begin_product(struct turn_trial *trial)
 {
+    struct work *work = &trial->work;
     vector edge[2][3];
-    bool never_zero = false;
     integer_each(edge, sizeof edge, mpz_init);
     for (int f = 0; f < 2; f++)
         for (int i = 0; i < 3; i++)
@@ -262,48 +247,168 @@ static bool set_product(const struct turn_exact *exact, mp_bitcnt_t bits, struct
         int signs = 0;
         for (int k = 0; k < 5; k++)
             signs += mpz_sgn(work->n[k][axis]);
-        never_zero = never_zero || signs == 5 || signs == -5;
+        trial->splits = trial->splits || signs == 5 || signs == -5;
     }
     for (int k = 0; k < 6; k++)
         for (int j = 0; j < 2; j++)
             if (k >= j && k - j < 5)
                 add_dot(work->n[k - j], work->difference[j], work->value[k]);
-    for (int f = 0; f < 2; f++) {
+    for (int f = 0; f < 2; f++)
         raise_degree(work->c[f]);
-        for (int k = 0; k < 6; k++) {
-            integer_cross(work->part, work->c[f][k], work->m[!f], work->scratch);
-            add_least(exact, !f, work->part, 1, NULL, bits, work, work->value[k]);
-        }
-    }
     integer_each(edge, sizeof edge, mpz_clear);
-    return never_zero;
 }
 
-enum turn_outcome turn_exact_outcome(const struct turn_exact *exact,
-                                     const struct turn_corners *corners, int sign, double lo,
-                                     double hi)
+void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners, int sign,
+                    double lo, double hi)
 {
-    const struct support_view *view = exact->path->pair.view;
-    struct work work;
-    enum turn_outcome outcome = TURN_OPEN;
-    integer_each(&work, sizeof work, mpz_init);
-    if (set_direction(exact, corners, sign, &work)) {
-        const mp_bitcnt_t bits = set_interval(exact, lo, hi, &work);
-        const bool fixed = corners->of < 2;
-        const bool splits =
-            fixed ? set_fixed(exact, corners->of, bits, &work) : set_product(exact, bits, &work);
-        const bool solid = view[0].solid || view[1].solid;
-        int positive = 0, negative = 0;
-        for (int k = 0; k < 6; k++) {
-            positive += mpz_sgn(work.value[k]) > 0;
-            negative += mpz_sgn(work.value[k]) < 0;
-        }
-        const bool weak = negative == 0 && (fixed ? splits || solid : splits && solid);
-        if (positive == 6)
-            outcome = TURN_APART;
-        else if (weak)
-            outcome = positive > 0 ? TURN_CLEAN : TURN_REST;
+    struct turn_trial *trial = memory_allocate(sizeof *trial);
+    struct work *work = &trial->work;
+    integer_each(work, sizeof *work, mpz_init);
+    exact->trial = trial;
+    trial->of = corners->of;
+    trial->splits = false;
+    trial->scan = trial->scans = trial->next = 0;
+    if (!set_direction(exact, corners, sign, work))
+        return;
+    trial->bits = set_interval(exact, lo, hi, work);
+    trial->scans = corners->of < 2 ? 7 : 12;
+    if (corners->of < 2)
+        begin_fixed(trial, corners->of);
+    else
+        begin_product(trial);
+}
+
+/* ---- Supports ----
+ *
+ * The coefficients of the vertices are supports, each a scan of one frame. For a direction fixed in
+ * frame f, scan 0 is that of m over f, for all coefficients, and scan 1 + k is that of c_k over the
+ * other frame. For a product, scan k is that of x_k x f over B, and scan 6 + k that of y_k x e over
+ * A (turn_path.h). */
+
+/* Returns the frame of the present scan, and sets x, whose least (*way > 0) or greatest x . v is
+ * needed. */
+static int begin_scan(struct turn_trial *trial, int *way)
+{
+    struct work *work = &trial->work;
+    const int of = trial->of;
+    const unsigned scan = trial->scan;
+    *way = of == 2 || (of == 0) == (scan > 0) ? 1 : -1;
+    if (of == 2) {
+        integer_cross(work->x, work->c[scan / 6][scan % 6], work->m[scan < 6], work->scratch);
+        return scan < 6;
     }
-    integer_each(&work, sizeof work, mpz_clear);
-    return outcome;
+    for (int axis = 0; axis < 3; axis++)
+        mpz_set(work->x[axis], scan == 0 ? work->m[0][axis] : work->c[0][scan - 1][axis]);
+    return scan == 0 ? of : !of;
+}
+
+/* Lists the vertices that may have the least or greatest x . v. */
+static void list_vertices(struct turn_trial *trial, const struct support_view *view)
+{
+    const unsigned count = view->vertices.count;
+    double n[FMB_DIM_MAX];
+    trial->count = count;
+    if (count > SUPPORT_SMALL) {
+        integer_round_vector(trial->work.x, n);
+        for (int axis = 0; axis < FMB_DIM_MAX && trial->way > 0; axis++)
+            n[axis] = -n[axis];
+        trial->count = support_view_list(view, n, NULL, count, trial->listed);
+    }
+    for (unsigned i = 0; i < count && trial->count == count; i++)
+        trial->listed[i] = (uint16_t) i;
+    trial->constant = trial->count == count;
+}
+
+/* Adds the result of a scan to the coefficients. */
+static void end_scan(struct turn_trial *trial)
+{
+    struct work *work = &trial->work;
+    const bool fixed = trial->of < 2, all = fixed && trial->scan == 0;
+    mpz_mul_2exp(work->least, work->least, trial->bits);
+    for (unsigned k = 0; k < 6; k++) {
+        if (!all && k != (trial->scan - fixed) % 6)
+            continue;
+        if (all)
+            mpz_mul(work->scratch, work->least, work->norm[k]);
+        else
+            mpz_set(work->scratch, work->least);
+        (trial->way > 0 ? mpz_add : mpz_sub)(work->value[k], work->value[k], work->scratch);
+    }
+    if (all)
+        trial->splits = !trial->constant;
+    trial->scan++;
+    trial->next = 0;
+}
+
+static enum turn_outcome outcome_of(const struct turn_exact *exact)
+{
+    const struct turn_trial *trial = exact->trial;
+    const struct support_view *view = exact->path->pair.view;
+    const bool solid = view[0].solid || view[1].solid;
+    const bool weak = trial->of < 2 ? trial->splits || solid : trial->splits && solid;
+    int positive = 0, negative = 0;
+    for (int k = 0; k < 6; k++) {
+        positive += mpz_sgn(trial->work.value[k]) > 0;
+        negative += mpz_sgn(trial->work.value[k]) < 0;
+    }
+    if (positive == 6)
+        return TURN_APART;
+    if (trial->scans == 0 || negative > 0 || !weak)
+        return TURN_OPEN;
+    return positive > 0 ? TURN_CLEAN : TURN_REST;
+}
+
+static void end_trial(struct turn_exact *exact)
+{
+    integer_each(&exact->trial->work, sizeof exact->trial->work, mpz_clear);
+    memory_release(exact->trial, sizeof *exact->trial);
+    exact->trial = NULL;
+}
+
+/* The time of a value x . v in nanoseconds: 300, and half of one for each product of limbs. */
+static double cost_of(vector x, vector v)
+{
+    double products = 0;
+    for (int axis = 0; axis < 3; axis++)
+        products += (double) mpz_size(x[axis]) * (double) mpz_size(v[axis]);
+    return 300 + 0.5 * products;
+}
+
+/* The most that the values of a step cost. */
+static const double step_cost = 3e5;
+
+bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome)
+{
+    struct turn_trial *trial = exact->trial;
+    struct work *work = &trial->work;
+    double spent = 0;
+    while (trial->scan < trial->scans) {
+        if (trial->next == 0) {
+            trial->f = begin_scan(trial, &trial->way);
+            list_vertices(trial, &exact->path->pair.view[trial->f]);
+        }
+        for (; trial->next < trial->count; trial->next++) {
+            support_integers_vertex(&exact->integers, trial->f, trial->listed[trial->next],
+                                    work->vertex);
+            mpz_set_ui(work->other, 0);
+            add_dot(work->x, work->vertex, work->other);
+            const int order =
+                trial->next == 0 ? -1 : mpz_cmp(work->other, work->least) * trial->way;
+            trial->constant = trial->constant && (trial->next == 0 || order == 0);
+            if (order < 0)
+                mpz_swap(work->least, work->other);
+            spent += cost_of(work->x, work->vertex);
+            if (spent > step_cost) {
+                trial->next++;
+                break;
+            }
+        }
+        if (trial->next == trial->count)
+            end_scan(trial);
+        if (spent > step_cost)
+            return false;
+    }
+    *outcome = outcome_of(exact);
+    end_trial(exact);
+    return true;
 }

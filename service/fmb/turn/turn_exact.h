@@ -15,8 +15,11 @@ enum turn_outcome {
     TURN_REST   /* they may touch, and do not overlap */
 };
 
+struct turn_trial;
+
 struct turn_exact {
     const struct turn_path *path;
+    struct turn_trial *trial; /* the direction in progress, or NULL */
     struct support_integers integers;
     long unit; /* of lengths */
     mpz_t q[2][2][4], offset[3], drift[3];
@@ -31,10 +34,12 @@ void turn_exact_end(struct turn_exact *exact);
 void turn_exact_direction(const struct turn_exact *exact, const struct turn_corners *corners,
                           int sign, mpz_t m[2][3]);
 
-/* Returns what a direction, or its opposite if sign is -1, proves of the closed interval [lo, hi],
- * both multiples of 2^-52. It allocates and frees through GMP. */
-enum turn_outcome turn_exact_outcome(const struct turn_exact *exact,
-                                     const struct turn_corners *corners, int sign, double lo,
-                                     double hi);
+/* Begins to determine what a direction, or its opposite if sign is -1, proves of the closed
+ * interval [lo, hi], both multiples of 2^-52. It allocates through GMP until this is complete. */
+void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners, int sign,
+                    double lo, double hi);
+
+/* Performs a step of less than a millisecond. Returns whether the outcome is complete. */
+bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome);
 
 #endif

@@ -3,7 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { GAP_LOOKS_MAX = 2000, GAP_LOOKS_STEP = 16 };
+enum {
+    GAP_LOOKS_MAX = 2000,
+    GAP_LOOKS_STEP = 16,     /* the most looks of a step */
+    GAP_VERTICES_STEP = 4096 /* hulls of more vertices have fewer: a depth takes many scans */
+};
 
 /* Pieces shorter than this use a second direction. */
 static const double wide_piece = 0x1p-6;
@@ -161,9 +165,16 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     push(out, 0, 0, -INFINITY, false);
 }
 
+static unsigned looks_of_step(const struct support_pair *pair)
+{
+    const unsigned vertices = pair->view[0].vertices.count + pair->view[1].vertices.count;
+    const unsigned looks = 1 + GAP_VERTICES_STEP / vertices;
+    return looks < GAP_LOOKS_STEP ? looks : GAP_LOOKS_STEP;
+}
+
 enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_gap *out)
 {
-    const unsigned end = gap->looks + GAP_LOOKS_STEP;
+    const unsigned end = gap->looks + looks_of_step(&gap->path->pair);
     *failed = false;
     if (gap->work) {
         if (support_gap_step(gap->work, &gap->at) == GAP_UNSURE)
