@@ -3,11 +3,15 @@
 
 #include "unit.h"
 
+#include <math.h>
+
 #include "climb.h"
 #include "exact_work.h"
 #include "family.h"
 #include "limbs.h"
 #include "referee.h"
+#include "trial.h"
+#include "turn_family.h"
 #include "work_steps.h"
 
 enum { TEXT_SIZE = FMB_CERTIFICATE_MAX, EVERYTHING = FMB_WANT_BOX | FMB_WANT_GAP };
@@ -176,6 +180,42 @@ static void contacts_of_numbers_that_round_are_taken_as_they_are(void **state)
         }
 }
 
+/* Of pairs that turn: the work of a step, of a certificate's step, and of a pair, in products of
+ * limbs. Numbers and quaternions of all exponents take most. */
+static void work_of_turning_pairs_is_bounded(void **state)
+{
+    static const double most_of_step = 2e5, most_of_pair = 3.5e8;
+    double most[2] = {0}, pair = 0;
+    struct draw draw;
+    draw_begin(&draw, "work_of_turning_pairs_is_bounded");
+    for (size_t f = 0; family_turning_at(f); f++) {
+        const struct family *family = family_turning_at(f);
+        struct cell cells[CELL_OF_ALL_SHAPES];
+        const int count = family_cells(family, cells);
+        for (long n = count * draw_sample(4) - 1; n >= 0; n--) {
+            struct question question;
+            struct trial trial;
+            int steps = 0;
+            bool made;
+            family_draw(family, &cells[n % count], &draw, &question);
+            trial_begin(&question, &trial);
+            const struct fmb_placement placements[2] = {trial.pair[0].a, trial.pair[0].b};
+            const double before = exact_work;
+            const double step = work_of_scene_step(placements, question.duration, work, &steps);
+            pair = fmax(pair, exact_work - before);
+            most[0] = fmax(most[0], step);
+            if (trial.body[0].frame_count == 1 && trial.body[1].frame_count == 1)
+                most[1] = fmax(most[1], work_of_certificate_step(placements, question.duration,
+                                                                 work, &steps, &made));
+            trial_end(&trial);
+        }
+    }
+    printf("# at most %.0f in a step, %.0f of a certificate; a pair %.0f\n", most[0], most[1],
+           pair);
+    assert_true(most[0] > 0 && most[0] <= most_of_step && most[1] <= most_of_step);
+    assert_true(pair <= most_of_pair);
+}
+
 /* The limits are about one and a half times the work that searches found; a step takes less than a
  * millisecond. */
 int main(void)
@@ -189,10 +229,11 @@ int main(void)
         {"gaps", work_of_gap, {4e4, 3e5}, 8},
         {"certificates", work_of_certificate, {2.4e5, 2.4e5}, 8}};
     enum { SEARCHES = COUNT(searches) };
-    struct CMUnitTest tests[2 + SEARCHES] = {
+    struct CMUnitTest tests[3 + SEARCHES] = {
         cmocka_unit_test(only_slabs_that_may_have_an_end_are_computed),
-        cmocka_unit_test(contacts_of_numbers_that_round_are_taken_as_they_are)};
+        cmocka_unit_test(contacts_of_numbers_that_round_are_taken_as_they_are),
+        cmocka_unit_test(work_of_turning_pairs_is_bounded)};
     for (size_t i = 0; i < SEARCHES; i++)
-        tests[2 + i] = (struct CMUnitTest) cmocka_unit_test_prestate(work_is_bounded, &searches[i]);
+        tests[3 + i] = (struct CMUnitTest) cmocka_unit_test_prestate(work_is_bounded, &searches[i]);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
