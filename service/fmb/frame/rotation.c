@@ -5,8 +5,10 @@
 struct quaternion rotation_scaled(struct quaternion q)
 {
     const int exponent = ilogb(quaternion_largest(q));
-    return (struct quaternion){ldexp(q.w, -exponent), ldexp(q.x, -exponent), ldexp(q.y, -exponent),
-                               ldexp(q.z, -exponent)};
+    const int first = exponent < -1000 ? -1000 : exponent;
+    const double scale = ldexp(1, -first), rest = ldexp(1, first - exponent); /* rest: mostly 1 */
+    return (struct quaternion){q.w * scale * rest, q.x * scale * rest, q.y * scale * rest,
+                               q.z * scale * rest};
 }
 
 /* Returns whether a component is 0 or, scaled, at least least in magnitude; false for a NaN. */

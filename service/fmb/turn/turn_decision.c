@@ -313,6 +313,36 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
         part->direction.m[0][axis] *= part->sign;
 }
 
+/* Remembers the part of an interval, around its middle, over which a direction separates the
+ * frames.
+ */
+static void remember_apart(struct turn_decision *decision, struct turn_interval interval,
+                           double middle, const struct turn_direction *direction)
+{
+    turn_part(&decision->path, direction, middle, &interval.lo, &interval.hi);
+    if (turn_distance(&decision->path, direction, interval.lo, interval.hi) > 0)
+        decision->apart[decision->apart_count++ % TURN_KNOWN] = interval;
+}
+
+/* Takes into account what is remembered of the interval in progress: removes it if the frames are
+ * apart over all of it, and divides it if they are at its middle. Returns whether it did. */
+static bool take_apart(struct turn_decision *decision, struct turn_interval interval)
+{
+    const double middle = middle_of(interval);
+    bool divides = false;
+    for (unsigned k = 0; k < decision->apart_count && k < TURN_KNOWN; k++) {
+        const struct turn_interval apart = decision->apart[k];
+        if (apart.lo <= interval.lo && interval.hi <= apart.hi) {
+            pop(decision);
+            return true;
+        }
+        divides = divides || (apart.lo <= middle && middle <= apart.hi);
+    }
+    if (divides)
+        divide(decision, interval);
+    return divides;
+}
+
 /* Examines the middle of an interval. */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
@@ -333,6 +363,8 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
                 return;
             }
         if (width > short_interval) {
+            if (!decision->proof)
+                remember_apart(decision, interval, middle, &direction[0]);
             divide(decision, interval);
             return;
         }
@@ -704,6 +736,9 @@ static bool work_once(struct turn_decision *decision, struct fmb_answer *answer)
     }
     const struct turn_interval interval = decision->stack[decision->count - 1];
     const bool exact = decision->stage == TURN_CORNER;
+    if (decision->stage == TURN_LOOK && interval.hi - interval.lo > short_interval &&
+        take_apart(decision, interval))
+        return false;
     if (decision->stage == TURN_LOOK)
         look_at(decision, interval);
     else if (exact)
@@ -724,6 +759,40 @@ bool turn_step(struct turn_decision *decision, struct fmb_answer *answer)
     return decision->phase == TURN_COMPLETE;
 }
 
+/* Returns whether the balls about the positions that contain the frames are apart all the time.
+ * The difference D of the positions is linear in s. So along a fixed n it is least at an end of the
+ * window; n is D where it is shortest, up to rounding. A term of D passes three roundings, its
+ * product with n four, |n| and the reaches four: 2^-48 of the magnitudes covers each. If n . D is
+ * finite, no product has overflowed; where it or n . n is small, underflow may matter. */
+static bool is_far(const struct frame_pair *frames)
+{
+    const struct placed_frame *const of[2] = {&frames->a, &frames->b};
+    double end[2][FMB_DIM_MAX] = {{0}}, n[FMB_DIM_MAX], most = 0, along = 0, square = 0;
+    for (int f = 0; f < 2; f++)
+        for (int axis = 0; axis < of[f]->frame->dim; axis++) {
+            const struct fmb_placement *placement = of[f]->placement;
+            const double p = placement->position[axis];
+            const double path = placement->velocity[axis] * frames->duration;
+            const double late = placement->end_count ? placement->end_position[axis] : p + path;
+            end[0][axis] += f ? p : -p;
+            end[1][axis] += f ? late : -late;
+            most += fabs(p) + fabs(late) + fabs(path);
+        }
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
+        const double way = end[1][axis] - end[0][axis];
+        along -= way * end[0][axis];
+        square += way * way;
+    }
+    const double s = square > 0 ? fmin(fmax(along / square, 0), 1) : 0;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        n[axis] = (1 - s) * end[0][axis] + s * end[1][axis];
+    const double least = fmin(vec3_dot(n, end[0]), vec3_dot(n, end[1]));
+    const double reach = frames->a.frame->reach + frames->b.frame->reach + 0x1p-48 * most;
+    const double length = sqrt(vec3_dot(n, n));
+    return length > 0x1p-200 && least > 0x1p-400 && least < INFINITY &&
+           least > reach * (1 + 0x1p-48) * length;
+}
+
 bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest, bool bounded,
                 struct turn_decision *out, struct turn_proof *proof, struct fmb_answer *answer)
 {
@@ -739,7 +808,7 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->stage = TURN_LOOK;
     out->programs = NULL;
     out->exact.trial = NULL;
-    out->looks = out->next_known = 0;
+    out->looks = out->next_known = out->apart_count = 0;
     out->looked = -1;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
     memset(out->nearest.direction, 0, sizeof out->nearest.direction);
@@ -748,6 +817,8 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->in[0] = out->out[0] = INFINITY;
     out->in[1] = out->out[1] = -INFINITY;
     out->count = 0;
+    if (!proof && !(want & FMB_WANT_GAP) && is_far(&out->frames))
+        return turn_step(out, answer);
     push(out, 0, 1);
     turn_path_set(&out->frames, &out->path);
     return turn_step(out, answer);

@@ -77,6 +77,8 @@ struct turn_decision {
         enum fmb_verdict verdict;
     } known[TURN_KNOWN]; /* verdicts at examined times */
     unsigned next_known;
+    struct turn_interval apart[TURN_KNOWN]; /* intervals over which the frames are apart */
+    unsigned apart_count;                   /* of all there were; the oldest are replaced */
     struct turn_exact exact;
     bool has_exact;
     struct programs *programs; /* of the pose of the path */

@@ -426,3 +426,56 @@ bool turn_may_separate(const struct turn_path *path, const struct turn_direction
         may = may && !(of.value[k] < -0x1p12 * binomial[k] * of.error);
     return may;
 }
+
+/* Returns a polynomial with these coefficients at x in [0, 1]. */
+static double value_at(const double c[6], double x)
+{
+    const double y = 1 - x;
+    double value = c[5], power = y;
+    for (int k = 4; k >= 0; k--) {
+        value = value * x + c[k] * power;
+        power *= y;
+    }
+    return value;
+}
+
+/* Returns the part of the way from x to `end` on which a polynomial that is positive at x is
+ * positive, or, if that is all of it, on which it falls to its least value: a share of the way. */
+static double positive_part(const double c[6], double x, double end, bool *negative)
+{
+    enum { SAMPLES = 16, HALVINGS = 40 };
+    double least = value_at(c, x), before = 0, at = 0, in = 0, out = 1;
+    for (int k = 1; k <= SAMPLES; k++) {
+        const double share = (double) k / SAMPLES, value = value_at(c, x + share * (end - x));
+        *negative = value < 0;
+        if (*negative) {
+            in = before, out = share;
+            break;
+        }
+        before = share;
+        if (value < least)
+            least = value, at = share;
+    }
+    for (int k = 0; k < HALVINGS && *negative; k++) {
+        const double middle = 0.5 * (in + out);
+        *(value_at(c, x + middle * (end - x)) > 0 ? &in : &out) = middle;
+    }
+    return *negative ? in : at;
+}
+
+void turn_part(const struct turn_path *path, const struct turn_direction *direction, double at,
+               double *lo, double *hi)
+{
+    struct turn_polynomial of;
+    const double width = *hi - *lo, x = (at - *lo) / width;
+    bool negative[2];
+    set_polynomial(path, direction, 1, *lo, *hi, &of);
+    for (int k = 0; k < 6; k++)
+        of.value[k] -= 4 * binomial[k] * of.error;
+    const double before = positive_part(of.value, x, 0, &negative[0]);
+    const double after = positive_part(of.value, x, 1, &negative[1]);
+    if (negative[0] || (!negative[1] && before > 0))
+        *lo = ceil((at - before * x * width) * 0x1p52) * 0x1p-52;
+    if (negative[1] || (!negative[0] && after > 0))
+        *hi = floor((at + after * (1 - x) * width) * 0x1p52) * 0x1p-52;
+}

@@ -117,6 +117,11 @@ void turn_normal(const struct turn_path *path, const struct turn_direction *dire
 double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
                      double lo, double hi);
 
+/* Shrinks [*lo, *hi], which contains `at`, to a part around `at` over which turn_distance() is
+ * probably positive. This proves nothing. */
+void turn_part(const struct turn_path *path, const struct turn_direction *direction, double at,
+               double *lo, double *hi);
+
 /* Returns whether a direction, or its opposite if sign is -1, might separate the frames weakly: no
  * coefficient is far below 0. This proves nothing. */
 bool turn_may_separate(const struct turn_path *path, const struct turn_direction *direction,
