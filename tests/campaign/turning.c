@@ -474,13 +474,14 @@ static bool take_half(int which, struct solid *solid)
 /* Replaces an end by a velocity. Returns whether the end does not turn and nothing rounds. */
 static bool take_velocity(double duration, struct solid *solid)
 {
-    bool exact = true;
+    int exponent;
+    bool exact = frexp(duration, &exponent) == 0.5;
     for (int i = 0; i < solid->orientation_count && solid->ending; i++)
         exact = exact && solid->orientation[i] == solid->end_orientation[i];
     for (int axis = 0; axis < solid->dim && solid->ending; axis++)
         exact = halve(solid->end_origin[axis], -solid->origin[axis], 1 / duration,
                       &solid->velocity[axis]) &&
-                1 / (1 / duration) == duration && exact;
+                exact;
     solid->moving = solid->ending;
     solid->ending = false;
     return exact;
