@@ -344,6 +344,17 @@ inline number sqrt(number x)
     return rounded(value, from, false);
 }
 
+/* A whole number counts as given. */
+inline number floor(number x)
+{
+    return std::floor(x.value);
+}
+
+inline number ceil(number x)
+{
+    return std::ceil(x.value);
+}
+
 inline bool isfinite(number x)
 {
     return std::isfinite(x.value);
