@@ -324,9 +324,9 @@ static void remember_apart(struct turn_decision *decision, struct turn_interval 
         decision->apart[decision->apart_count++ % TURN_KNOWN] = interval;
 }
 
-/* Takes into account what is remembered of the interval in progress: removes it if the frames are
- * apart over all of it, and divides it if they are at its middle. Returns whether it did. */
-static bool take_apart(struct turn_decision *decision, struct turn_interval interval)
+/* Removes the interval in progress if the frames are known to be apart over all of it, and divides
+ * it if they are known to be apart at its middle. Returns whether it did either. */
+static bool skip_apart(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval);
     bool divides = false;
@@ -737,7 +737,7 @@ static bool work_once(struct turn_decision *decision, struct fmb_answer *answer)
     const struct turn_interval interval = decision->stack[decision->count - 1];
     const bool exact = decision->stage == TURN_CORNER;
     if (decision->stage == TURN_LOOK && interval.hi - interval.lo > short_interval &&
-        take_apart(decision, interval))
+        skip_apart(decision, interval))
         return false;
     if (decision->stage == TURN_LOOK)
         look_at(decision, interval);

@@ -5,7 +5,8 @@
  *
  *   doubles   a search at the middle (turn_look()) proves an overlap, or gives a direction. The
  *             direction may prove that the frames are apart over the interval (turn_distance());
- *             otherwise the interval is divided.
+ *             otherwise the interval is divided. If they are apart over a part of it, no time
+ *             within this part is examined again.
  *   integers  if the search is unsure, or an interval is shorter than 2^-41: the programs give the
  *             exact verdict at the middle; over the interval, the exact polynomials (turn_exact.h)
  *             of directions given by vertices are tried: for frames with few vertices all normals
