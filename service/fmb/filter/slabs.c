@@ -79,6 +79,13 @@
  * pair spans too many bits for integers (limbs_prepare), so that its slabs are never decided one by
  * one. Along axes with known signs (slabs_second.h) the velocities are equal, and nothing
  * underflows. */
+
+/* gcc 13 warns that loops over the axes, of which there are 2 or 3, could leave their array. */
+#if __GNUC__ == 13
+#pragma GCC diagnostic ignored "-Warray-bounds"
+#pragma GCC diagnostic ignored "-Wstringop-overread"
+#endif
+
 #define INLINED_NOT
 #define SLABS_LIST
 #include "slabs.h"
