@@ -91,8 +91,8 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
     UNROLL(2)
     for (int w = 0; w < 4; w += 2) {
         const lanes x = lanes_load(frame[0] + first + w), y = lanes_load(frame[1] + first + w);
-        words[w] = __builtin_shufflevector(x, y, 0, 2);
-        words[w + 1] = __builtin_shufflevector(x, y, 1, 3);
+        words[w] = SHUFFLED(x, y, 0, 2);
+        words[w + 1] = SHUFFLED(x, y, 1, 3);
     }
 }
 
@@ -106,12 +106,10 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
     for (int odd = 0; odd < 2; odd++) {
         const lanes x = lanes_load(frame[0] + first), y = lanes_load(frame[1] + first);
         const lanes z = lanes_load(frame[2] + first), w = lanes_load(frame[3] + first);
-        const lanes xy = odd ? __builtin_shufflevector(x, y, 1, 5, 3, 7)
-                             : __builtin_shufflevector(x, y, 0, 4, 2, 6);
-        const lanes zw = odd ? __builtin_shufflevector(z, w, 1, 5, 3, 7)
-                             : __builtin_shufflevector(z, w, 0, 4, 2, 6);
-        words[odd] = __builtin_shufflevector(xy, zw, 0, 1, 4, 5);
-        words[2 + odd] = __builtin_shufflevector(xy, zw, 2, 3, 6, 7);
+        const lanes xy = odd ? SHUFFLED(x, y, 1, 5, 3, 7) : SHUFFLED(x, y, 0, 4, 2, 6);
+        const lanes zw = odd ? SHUFFLED(z, w, 1, 5, 3, 7) : SHUFFLED(z, w, 0, 4, 2, 6);
+        words[odd] = SHUFFLED(xy, zw, 0, 1, 4, 5);
+        words[2 + odd] = SHUFFLED(xy, zw, 2, 3, 6, 7);
     }
 }
 
@@ -138,14 +136,14 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
     const lanes y = four_of_two(frame[1] + first, frame[3] + first);
     const lanes z = four_of_two(frame[4] + first, frame[6] + first);
     const lanes w = four_of_two(frame[5] + first, frame[7] + first);
-    const lanes xy_even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
-    const lanes xy_odd = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
-    const lanes zw_even = __builtin_shufflevector(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
-    const lanes zw_odd = __builtin_shufflevector(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
-    words[0] = __builtin_shufflevector(xy_even, zw_even, 0, 1, 4, 5, 8, 9, 12, 13);
-    words[1] = __builtin_shufflevector(xy_odd, zw_odd, 0, 1, 4, 5, 8, 9, 12, 13);
-    words[2] = __builtin_shufflevector(xy_even, zw_even, 2, 3, 6, 7, 10, 11, 14, 15);
-    words[3] = __builtin_shufflevector(xy_odd, zw_odd, 2, 3, 6, 7, 10, 11, 14, 15);
+    const lanes xy_even = SHUFFLED(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+    const lanes xy_odd = SHUFFLED(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+    const lanes zw_even = SHUFFLED(z, w, 0, 8, 2, 10, 4, 12, 6, 14);
+    const lanes zw_odd = SHUFFLED(z, w, 1, 9, 3, 11, 5, 13, 7, 15);
+    words[0] = SHUFFLED(xy_even, zw_even, 0, 1, 4, 5, 8, 9, 12, 13);
+    words[1] = SHUFFLED(xy_odd, zw_odd, 0, 1, 4, 5, 8, 9, 12, 13);
+    words[2] = SHUFFLED(xy_even, zw_even, 2, 3, 6, 7, 10, 11, 14, 15);
+    words[3] = SHUFFLED(xy_odd, zw_odd, 2, 3, 6, 7, 10, 11, 14, 15);
 }
 
 #endif

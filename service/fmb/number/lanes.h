@@ -30,6 +30,14 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
+
+/* The lanes of x and y with these indices; those of y come after those of x. gcc 11 has another
+ * function. */
+#if defined(__clang__) || __GNUC__ >= 12
+#define SHUFFLED(x, y, ...) __builtin_shufflevector(x, y, __VA_ARGS__)
+#else
+#define SHUFFLED(x, y, ...) __builtin_shuffle(x, y, (lanes_mask){__VA_ARGS__})
+#endif
 #endif
 
 /* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
@@ -197,7 +205,7 @@ INLINE lanes lanes_swap(lanes x)
 #if LANES == 1
     return x;
 #else
-    return __builtin_shufflevector(x, x, 1, 0);
+    return SHUFFLED(x, x, 1, 0);
 #endif
 }
 
