@@ -19,11 +19,14 @@ for file in "$copy"/debian/*@SOVERSION@*; do
     mv "$file" "${file%@SOVERSION@*}$soversion${file##*@SOVERSION@}"
 done
 sed -n '/^Permission/,$ { s/^$/./; s/^/ /; p }' LICENSE >> "$copy/debian/copyright"
+# The time of the last commit. In a tarball, all files have this time.
+time=$(git log -1 --format=%ct -- . 2> /dev/null) || time=
+time=${time:-$(stat -c %Y Makefile)}
+# Some are packaged with the time that they have here.
+find "$copy" -exec touch -hd "@$time" {} +
 {
     printf 'fmb (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n' "$version"
-    # The time of the last commit. In a tarball, all files have this time.
-    time=$(git log -1 --format=%ct -- . 2> /dev/null) || time=
-    printf -- ' -- %s  %s\n' "$(sed -n 's/^Maintainer: //p' .debian/control)" "$(date -uRd "@${time:-$(stat -c %Y Makefile)}")"
+    printf -- ' -- %s  %s\n' "$(sed -n 's/^Maintainer: //p' .debian/control)" "$(date -uRd "@$time")"
 } > "$copy/debian/changelog"
 cd "$copy"
 dpkg-buildpackage -b -us -uc
