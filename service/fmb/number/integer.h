@@ -13,11 +13,6 @@
 #include <stdint.h>
 #include <string.h>
 
-/* gcc 11 takes an array of mpz_t, which are arrays of one element, for a single one, and warns. */
-#if __GNUC__ == 11
-#pragma GCC diagnostic ignored "-Wstringop-overflow"
-#endif
-
 /* Every error bound of the engine holds for operations on doubles that are each rounded once, to
  * nearest. */
 #if defined __FAST_MATH__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__) || \
