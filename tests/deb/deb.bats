@@ -112,7 +112,7 @@ get() {
     grep -q ' restart fmbd.service$' "$root/asked"
     inside fmb query --local --box /usr/share/doc/fmb/examples/table.json > /dev/null
     # Libraries of two minor versions have no file in common.
-    for file in build/deb/libfmb*[0-9]_*.deb; do
+    for file in build/deb/libfmb*"${version%.*}"_*.deb; do
         [ -z "$(dpkg-deb -c "$file" | grep -v '/$' | grep -vF "${version%.*}")" ]
     done
 }
