@@ -401,7 +401,8 @@ enum fmb_want {
  * Pairs in which a placement has an end: the gap is the least at any one time, so an overlapping
  * pair has minus its greatest depth at one time. time is the time of the least gap, for all
  * verdicts and without witness points too. The direction proves the lower bound at this time only;
- * the witness points of a separated pair prove the upper bound.
+ * the witness points of a separated pair prove the upper bound. The work is limited. If it does not
+ * suffice, or lengths exceed 2^200 or are all below 2^-200, the enclosure is wider.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
  * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the
@@ -495,8 +496,7 @@ struct fmb_method {
  * wrong, but leaves some pairs without a verdict (FMB_CANNOT_DECIDE): frames whose contact is, or
  * begins or ends with, a single time that is not a multiple of 2^-50 of the window; two flat frames
  * that cross, or stay in one plane, if doubles do not decide them; frames with a radius that touch,
- * or that doubles do not decide; pairs whose gap is not enclosed within its greatest width; and
- * pairs that exceed a limit of work. Frames that rest, slide, roll, hang on a hinge, land, lift off
+ * or that doubles do not decide; and pairs that exceed a limit of work. Frames that rest, slide, roll, hang on a hinge, land, lift off
  * or turn together have a verdict if their numbers describe this exactly. Scenes and batches that
  * request only verdicts decide a few more pairs: fmb_decide() always encloses the contact too.
  *

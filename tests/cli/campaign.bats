@@ -79,8 +79,9 @@ setup() {
     run "$BUILD/turning" --pairs 5
     ended 0
     [[ ${lines[-1]} == *", 0 wrong, "* ]]
-    # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED ...
+    # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED LACKS WIDE ...
     [ "$(awk '/^turn-(table|lift|land|tumble|door)/ { count++; undecided += $10 } END { print count, undecided }' <<< "$output")" = "9 0" ]
+    [ "$(awk '/^turn-/ && !/^turn-(exponents|flat|thin)/ { wide += $12 } END { print wide }' <<< "$output")" = 0 ]
 }
 
 @test "campaigns print their usage, and refuse wrong options with exit code 2" {

@@ -558,6 +558,42 @@ static void the_end_of_a_graze_is_that_of_exact_poses(void **state)
     assert_true(answer.contact[1] <= 0.2896245213189829 + 1e-12);
 }
 
+/* Frames whose centres agree overlap deeply, but the origin is often on the boundary of a simplex
+ * that a search finds. The greatest depths are those of parallel faces, or of squares turned by 45
+ * degrees against each other. */
+static void bodies_with_a_common_centre(void **state)
+{
+    static const struct {
+        double size[2][3], orientation[2][4], height, depth;
+    } known[] = {
+        {{{1, 1, 1}, {1, 1, 1}}, {{1, 0, 0, 0}, {1, 0, 0, 1}}, 0, 1},
+        {{{1, 1, 1}, {1, 1, 1}}, {{2, 0, 0, -1}, {2, 0, 0, 1}}, 0, 1},
+        {{{1, 1, 1}, {1, 1, 1}}, {{1, 0, 0, 0}, {3, 1, 0, 0}}, 0, 1},
+        {{{1, 1, 1}, {1, 1, 1}}, {{1, 0, 0, 0}, {1, 0, 0, 1}}, 0.25, 0.75},
+        {{{2, 2, 2}, {1, 1, 1}}, {{1, 0, 0, 0}, {1, 0, 0, 1}}, 0, 1.5},
+        {{{1, 1, 4}, {1, 1, 4}}, {{1, 0, 0, 0}, {1, 0, 0, 1}}, 0, 0.5 + 0x1.6a09e667f3bccp-1},
+        {{{1, 1, 4}, {4, 1, 1}}, {{1, 0, 0, 0}, {1, 0, 0, 1}}, 0, 0.5 + 0x1.6a09e667f3bccp-1},
+    };
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        struct resting rest;
+        struct fmb_answer answer;
+        for (int f = 0; f < 2; f++)
+            box_of(known[k].size[f][0], known[k].size[f][1], known[k].size[f][2], &rest.body[f]);
+        rest.placement[0] = (struct fmb_placement){.body = &rest.body[0]};
+        rest.placement[1] =
+            turning(&rest.body[1], known[k].orientation[0], known[k].orientation[1]);
+        lift(&rest, known[k].height, known[k].height);
+        expect(rest.placement, FMB_OVERLAPPING, 0, 2);
+        assert_int_equal(fmb_decide(fmb_method_default(), &rest.placement[0], &rest.placement[1], 2,
+                                    FMB_WANT_GAP, &answer),
+                         FMB_OK);
+        assert_true(answer.has_gap);
+        assert_true(answer.gap.bounds[0] <= -known[k].depth + 0x1p-52);
+        assert_true(answer.gap.bounds[1] >= -known[k].depth - 0x1p-52);
+        assert_true(answer.gap.bounds[1] - answer.gap.bounds[0] <= 2e-12);
+    }
+}
+
 /* Scaling by a power of 2, from 2^-1000 to 2^900, keeps the verdict. */
 static void numbers_of_any_size(void **state)
 {
@@ -821,8 +857,8 @@ static void pairs_without_a_verdict_are_named(void **state)
     free(memory_of_scene);
 }
 
-/* Numbers whose exponents span a thousand bits: both orders have the same answer, and the
- * computation ends. */
+/* Numbers whose exponents span a thousand bits: both orders have the same answer, the gap encloses
+ * 0 from the side of the verdict and costs no verdict, and the computation ends. */
 static void hostile_exponents_end(void **state)
 {
     seed_of_draw = 9;
@@ -845,6 +881,13 @@ static void hostile_exponents_end(void **state)
             fmb_decide(fmb_method_default(), &pair[1], &pair[0], 2, FMB_WANT_TIMES, &swapped),
             status);
         assert_memory_equal(&answer, &swapped, sizeof answer);
+        assert_int_equal(
+            fmb_decide(fmb_method_default(), &pair[0], &pair[1], 2, FMB_WANT_GAP, &answer), status);
+        assert_int_equal(answer.verdict, swapped.verdict);
+        assert_true(answer.has_gap == (status == FMB_OK));
+        assert_true(answer.gap.bounds[0] <= answer.gap.bounds[1]);
+        assert_true(answer.verdict == FMB_SEPARATED ? answer.gap.bounds[1] > 0
+                                                    : answer.gap.bounds[0] <= 0);
     }
 }
 
@@ -865,6 +908,7 @@ int main(void)
         cmocka_unit_test(windows_join),
         cmocka_unit_test(straight_motion_as_an_end),
         cmocka_unit_test(the_end_of_a_graze_is_that_of_exact_poses),
+        cmocka_unit_test(bodies_with_a_common_centre),
         cmocka_unit_test(numbers_of_any_size),
         cmocka_unit_test(random_windows_agree_with_static_poses),
         cmocka_unit_test(scenes_give_the_answers_of_single_pairs),

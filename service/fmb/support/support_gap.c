@@ -337,7 +337,7 @@ static void search(const struct support_gap *gap, enum fmb_verdict verdict, doub
 /* Whether a pair with this verdict has a deepest pair of points. */
 static bool has_deepest(const struct support_pair *pair, enum fmb_verdict verdict)
 {
-    return verdict == FMB_OVERLAPPING && !pair->drifts;
+    return verdict == FMB_OVERLAPPING && !pair->drifts && !pair->posed;
 }
 
 /* In: verdict, of the pair; bounded: the grid, which allocates, is not used. */

@@ -68,12 +68,20 @@ static void begin_programs(struct turn_decision *decision, double s, bool neares
                              : programs_begin(pair, 0, first, count);
 }
 
-/* Searches in doubles at s. Returns the verdict, or 0. */
+/* Searches in doubles at s. Returns the verdict, or 0. A simplex with the origin on its boundary
+ * proves nothing, as of frames with a common centre; a depth that is not 0 proves an overlap. */
 static enum fmb_verdict look(struct turn_decision *decision, double s)
 {
+    const struct support_pair *pair = &decision->path.pair;
+    struct fmb_gap depth;
     enum fmb_verdict verdict = 0;
-    if (decision->path.pair.usable) {
+    if (pair->usable) {
         verdict = turn_look(&decision->path, s, decision->toward, &decision->nearest);
+        if (verdict == 0 && !pair->rounded &&
+            support_gap_of_pair(pair, false, &decision->nearest, FMB_OVERLAPPING, FMB_OVERLAPPING,
+                                INFINITY, &depth, NULL) == GAP_KNOWN &&
+            depth.bounds[1] < 0)
+            verdict = FMB_OVERLAPPING;
         decision->looks++;
         decision->looked = s;
         decision->sure = verdict != 0;
@@ -664,7 +672,8 @@ static void next_phase(struct turn_decision *decision, struct fmb_answer *answer
         set_touching_gap(decision, decision->in[0], &answer->gap);
         decision->phase = TURN_POINT;
     } else if (decision->want & FMB_WANT_GAP) {
-        turn_gap_begin(&decision->path, decision->swapped, !meets, decision->farthest,
+        turn_gap_begin(&decision->path, decision->swapped, !meets,
+                       decision->overlaps ? decision->overlap : 0, decision->farthest,
                        &decision->gap);
         decision->phase = TURN_GAP;
     } else {
@@ -674,19 +683,13 @@ static void next_phase(struct turn_decision *decision, struct fmb_answer *answer
 
 static void step_gap(struct turn_decision *decision, struct fmb_answer *answer)
 {
-    bool failed = !decision->path.pair.usable;
-    enum gap_outcome outcome = GAP_KNOWN;
-    if (!failed)
-        outcome = turn_gap_step(&decision->gap, &failed, &answer->gap);
-    if (failed) {
-        memset(answer, 0, sizeof *answer);
-        turn_end(decision);
-    } else if (outcome != GAP_UNSURE) {
-        answer->has_gap = true;
-        if (outcome == GAP_FAR)
-            answer->gap = gap_none();
-        decision->phase = TURN_POINT;
-    }
+    const enum gap_outcome outcome = turn_gap_step(&decision->gap, &answer->gap);
+    if (outcome == GAP_UNSURE)
+        return;
+    answer->has_gap = true;
+    if (outcome == GAP_FAR)
+        answer->gap = gap_none();
+    decision->phase = TURN_POINT;
 }
 
 /* Begins the programs that compute the point, if it is wanted. */

@@ -49,9 +49,11 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
     const double enough = fmin(gap->at.bounds[1], gap->best.bounds[1]) - gap->tight;
     double least = next->least;
     gap->at.time = gap->path->pair.at * gap->path->pair.frames->duration;
+    /* The depth of frames that are slightly apart is 0, and the direction proves a distance. */
+    gap->at.bounds[0] = fmin(gap->at.bounds[0], gap->at.bounds[1]);
     /* Also tries the vertices that become supporting within the piece, and the last good direction.
      */
-    for (int k = 0; k < 3 && least < enough; k++) {
+    for (int k = 0; k < 3 && least < enough && gap->path->pair.usable; k++) {
         const double slack = k == 1 ? next->hi - next->lo : 0;
         const unsigned count =
             k == 2 ? gap->has_good : turn_directions(gap->path, n, slack, direction);
@@ -79,10 +81,10 @@ static double proved_by(const struct support_pair *pair, const double n[FMB_DIM_
     return -support_farthest(pair, outward, &column) - (1.25 * pair->error + pair->radius[1]);
 }
 
-/* Takes a search that proves no verdict. The frames are at most as far apart as its nearest point.
- * Its direction, computed from a small difference of large numbers, may be poor; the last good
- * direction replaces it if that proves more. */
-static void take_unsure(struct turn_gap *gap, struct support_nearest *nearest)
+/* Bounds the gap by a search that proves no verdict. The frames are at most as far apart as its
+ * nearest point. Its direction, computed from a small difference of large numbers, may be poor; the
+ * last good direction replaces it if that proves more. */
+static void set_unsure(struct turn_gap *gap, struct support_nearest *nearest)
 {
     const struct support_pair *pair = &gap->path->pair;
     double *n = nearest->direction, good[FMB_DIM_MAX];
@@ -103,7 +105,6 @@ static void take_unsure(struct turn_gap *gap, struct support_nearest *nearest)
     gap->at.bounds[1] = support_distance_above(pair, nearest) - pair->radius[0];
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         gap->at.direction[axis] = (gap->swapped ? -1 : 1) * n[axis] + 0.0;
-    take(gap, n);
 }
 
 static void take_known(struct turn_gap *gap)
@@ -114,40 +115,44 @@ static void take_known(struct turn_gap *gap)
     take(gap, n);
 }
 
-/* Examines the middle of a piece. */
+/* Examines the middle of a piece. A search is also unsure of frames that overlap deeply, if its
+ * simplex has the origin on its boundary, as for frames with a common centre. The method of the
+ * depth does not depend on the simplex. */
 static void look(struct turn_gap *gap, struct turn_piece piece)
 {
     struct support_pair *pair = &gap->path->pair;
     struct support_nearest nearest;
     double toward[FMB_DIM_MAX];
+    enum fmb_verdict cores = 0, verdict = 0;
     gap->next = piece;
     memset(&gap->at, 0, sizeof gap->at);
     gap->looks++;
     turn_path_pose(gap->path, 0.5 * (piece.lo + piece.hi));
-    support_toward(pair, toward);
-    enum fmb_verdict cores = support_search_from(pair, toward, INFINITY, &nearest);
-    /* A simplex with the origin on its boundary proves nothing. Another first direction may lead to
-     * another simplex. */
-    for (int k = 0; k < 2 && cores == 0 && !gap->separated; k++) {
-        const double turned[FMB_DIM_MAX] = {toward[1] - toward[2], -toward[0], toward[0]};
-        memcpy(toward, turned, (size_t) pair->dim * sizeof *toward);
-        if (vec3_dot(toward, toward) > 0)
-            cores = support_search_from(pair, toward, INFINITY, &nearest);
+    if (pair->usable) {
+        support_toward(pair, toward);
+        cores = support_search_from(pair, toward, INFINITY, &nearest);
+        verdict = pair->rounded ? support_round_verdict(pair, cores, &nearest) : cores;
     }
-    enum fmb_verdict verdict = pair->rounded ? support_round_verdict(pair, cores, &nearest) : cores;
-    if (gap->separated)
+    if (gap->separated) {
         cores = verdict = FMB_SEPARATED;
-    if (cores == 0 || verdict == 0)
-        take_unsure(gap, &nearest);
-    else if (support_gap_of_pair(pair, gap->swapped, &nearest, cores, verdict, INFINITY, &gap->at,
-                                 &gap->work) == GAP_KNOWN)
+    } else if (cores == 0 || verdict == 0) {
+        if (pair->usable)
+            set_unsure(gap, &nearest);
+        if (cores || (pair->usable && gap->at.bounds[1] - gap->at.bounds[0] <= gap->tight)) {
+            take_known(gap);
+            return;
+        }
+        cores = verdict = FMB_OVERLAPPING;
+    }
+    if (support_gap_of_pair(pair, gap->swapped, pair->usable ? &nearest : NULL, cores, verdict,
+                            INFINITY, &gap->at, &gap->work) == GAP_KNOWN)
         take_known(gap);
 }
 
 /* ---- All pieces ---- */
 
-void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double farthest,
-                    struct turn_gap *out)
+void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double known,
+                    double farthest, struct turn_gap *out)
 {
     out->path = path;
     out->separated = separated;
@@ -159,10 +164,14 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;
+    /* No point of D is farther from the origin than the reach and the radii. */
+    const double least = separated ? 0 : -(path->pair.reach + path->pair.radius[1]) * (1 + 0x1p-40);
     /* The ends come first: the gap is often least there. */
-    push(out, 0, 1, -INFINITY, false);
-    push(out, 1, 1, -INFINITY, false);
-    push(out, 0, 0, -INFINITY, false);
+    push(out, 0, 1, least, !path->pair.usable);
+    push(out, 1, 1, least, false);
+    push(out, 0, 0, least, false);
+    if (!path->pair.usable)
+        push(out, known, known, least, false);
 }
 
 static unsigned looks_of_step(const struct support_pair *pair)
@@ -172,10 +181,9 @@ static unsigned looks_of_step(const struct support_pair *pair)
     return looks < GAP_LOOKS_STEP ? looks : GAP_LOOKS_STEP;
 }
 
-enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_gap *out)
+enum gap_outcome turn_gap_step(struct turn_gap *gap, struct fmb_gap *out)
 {
     const unsigned end = gap->looks + looks_of_step(&gap->path->pair);
-    *failed = false;
     if (gap->work) {
         if (support_gap_step(gap->work, &gap->at) == GAP_UNSURE)
             return GAP_UNSURE;
@@ -187,10 +195,14 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_ga
         for (unsigned k = 1; k < gap->count; k++)
             if (gap->piece[k].least <= gap->piece[first].least)
                 first = k;
-        const double least = gap->count ? gap->piece[first].least : gap->best.bounds[0];
+        const struct turn_piece piece = gap->piece[first];
+        const double least = gap->count ? piece.least : gap->best.bounds[0];
+        const double shortest = gap->path->pair.usable ? 0x1p-49 : INFINITY;
         if (least > gap->farthest + gap->tight)
             return GAP_FAR;
-        if (gap->best.bounds[1] - least <= gap->tight) {
+        if (gap->best.bounds[1] - least <= gap->tight || gap->count == 0 ||
+            gap->looks > GAP_LOOKS_MAX || gap->count + 2 > TURN_PIECES ||
+            (piece.looked && piece.hi - piece.lo < shortest)) {
             *out = gap->best;
             out->bounds[0] = fmin(least, out->bounds[0]);
             if (!gap->separated) {
@@ -198,16 +210,19 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_ga
                 out->has_witness = false;
                 memset(out->witness, 0, sizeof out->witness);
             }
-            *failed = !(out->bounds[1] - out->bounds[0] <= gap->tight);
             return GAP_KNOWN;
         }
-        const struct turn_piece piece = gap->piece[first];
-        *failed = gap->count == 0 || gap->looks > GAP_LOOKS_MAX || gap->count + 2 > TURN_PIECES ||
-                  (piece.looked && piece.hi - piece.lo < 0x1p-49);
-        if (*failed)
-            return GAP_KNOWN;
         gap->piece[first] = gap->piece[--gap->count];
-        if (piece.looked) {
+        /* The last good direction often bounds a piece tightly, and costs less than a depth. */
+        const double bound =
+            !piece.looked && gap->has_good && !gap->separated && piece.lo < piece.hi
+                ? turn_distance(gap->path, &gap->good, piece.lo, piece.hi)
+                : -INFINITY;
+        if (bound >= gap->best.bounds[1] - gap->tight) {
+            gap->looks++;
+            if (bound <= gap->best.bounds[1])
+                push(gap, piece.lo, piece.hi, bound, true);
+        } else if (piece.looked) {
             const double middle = 0.5 * (piece.lo + piece.hi);
             push(gap, middle, piece.hi, piece.least, false);
             push(gap, piece.lo, middle, piece.least, false);

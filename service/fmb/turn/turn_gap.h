@@ -33,13 +33,14 @@ struct turn_gap {
     struct fmb_gap at;             /* its gap */
 };
 
-/* Begins the search. path must outlive it. separated: the verdict of the pair. */
-void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double farthest,
-                    struct turn_gap *out);
+/* Begins the search. path must outlive it. separated: the verdict of the pair, which does not
+ * touch. known: if it overlaps, a time of overlap; otherwise any time. */
+void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double known,
+                    double farthest, struct turn_gap *out);
 
 /* Performs a step. Returns GAP_UNSURE until the search is complete, then GAP_KNOWN, with *out set,
- * or GAP_FAR. *failed: it is complete, but the gap cannot be enclosed within the limit. */
-enum gap_outcome turn_gap_step(struct turn_gap *gap, bool *failed, struct fmb_gap *out);
+ * or GAP_FAR. The enclosure is wider than the limit only if the work is limited (fmb.h). */
+enum gap_outcome turn_gap_step(struct turn_gap *gap, struct fmb_gap *out);
 
 /* Abandons the search, complete or not. */
 void turn_gap_end(struct turn_gap *gap);
