@@ -495,10 +495,11 @@ struct fmb_method {
  * Placements with an end. certified and exact decide these pairs in the same way. It is never
  * wrong, but leaves some pairs without a verdict (FMB_CANNOT_DECIDE): frames whose contact is, or
  * begins or ends with, a single time that is not a multiple of 2^-50 of the window; two flat frames
- * that cross, or stay in one plane, if doubles do not decide them; frames with a radius that touch,
- * or that doubles do not decide; and pairs that exceed a limit of work. Frames that rest, slide, roll, hang on a hinge, land, lift off
- * or turn together have a verdict if their numbers describe this exactly. Scenes and batches that
- * request only verdicts decide a few more pairs: fmb_decide() always encloses the contact too.
+ * that cross, or stay in one plane, if doubles do not decide them; frames with a radius that stay
+ * in contact while the direction of the contact turns relative to both; and pairs that exceed a
+ * limit of work. Frames that rest, slide, roll, hang on a hinge, land, lift off or turn together
+ * have a verdict if their numbers describe this exactly. Scenes and batches that request only
+ * verdicts decide a few more pairs: fmb_decide() always encloses the contact too.
  *
  * Cost: exact takes tens to hundreds of microseconds for numbers of similar size. Its time is
  * bounded for any numbers, as the time of certified is: among pairs whose exponents span the whole

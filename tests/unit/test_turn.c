@@ -453,6 +453,66 @@ static void cubes_tumble_over_an_edge(void **state)
     expect(rest.placement, FMB_OVERLAPPING, 0, 2);
 }
 
+static void set_rounded(struct resting *rest, int f, const double *vertices, size_t numbers,
+                        double radius)
+{
+    assert_int_equal(fmb_body_make_hull(3, vertices, numbers, rest->memory[f], &rest->body[f]),
+                     FMB_OK);
+    assert_int_equal(fmb_body_inflate(&rest->body[f], radius), FMB_OK);
+}
+
+/* Balls, capsules and padded plates roll, yaw and slide on a table, on an edge of it, and on each
+ * other, hang on a post, and graze a ceiling. */
+static void rounded_bodies_rest_and_hang(void **state)
+{
+    static const double rod[] = {-1, 0, 0, 1, 0, 0}, across[] = {0, -1, 0, 0, 1, 0};
+    static const double post[] = {0, 0, -2, 0, 0, 2}, door[] = {0.5, 0, 0, 2, 0, 0};
+    static const double plate[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    static const double back[4] = {3, 0, 0, -1}, forth[4] = {3, 0, 0, 1};
+    const double e = ldexp(1, -EPSILON_BITS);
+    struct resting rest;
+    struct fmb_answer answer;
+    set_table(&rest);
+    set_rounded(&rest, 1, (const double[]){0, 0, 0}, 3, 0.5);
+    expect_resting(&rest, 0.5);
+    set_rounded(&rest, 1, (const double[]){0, 0, 0}, 3, 1.25);
+    rest.placement[0].position[1] = -5.75; /* the edge is 3/4 beside the centre, and 1 below */
+    rest.placement[0].position[2] = -1.5;
+    expect_resting(&rest, 0);
+    set_table(&rest);
+    set_rounded(&rest, 1, rod, 6, 0.25);
+    expect_resting(&rest, 0.25);
+    set_rounded(&rest, 1, plate, 12, 0.125);
+    expect_resting(&rest, 0.125);
+    set_rounded(&rest, 0, rod, 6, 0.375);
+    set_rounded(&rest, 1, across, 6, 0.125);
+    rest.placement[0].position[2] = 0;
+    rest.placement[1].position[0] = -0.5, rest.placement[1].end_position[0] = 0.5;
+    expect_resting(&rest, 0.5);
+    for (int k = -1; k <= 1; k++) {
+        set_rounded(&rest, 0, post, 6, 0.25 - k * e);
+        set_rounded(&rest, 1, door, 6, 0.25);
+        rest.placement[1] = turning(&rest.body[1], back, forth);
+        expect(rest.placement,
+               k < 0    ? FMB_OVERLAPPING
+               : k == 0 ? FMB_TOUCHING
+                        : FMB_SEPARATED,
+               0, 2);
+        /* At half time, the end of a rod is nearest to a ceiling. */
+        box_of(8, 1, 8, &rest.body[0]);
+        set_rounded(&rest, 1, across, 6, 0.5);
+        rest.placement[0].position[1] = 2 + k * e;
+        rest.placement[1] = turning(&rest.body[1], back, forth);
+        assert_int_equal(decide(rest.placement, &answer), FMB_OK);
+        assert_int_equal(answer.verdict, k < 0    ? FMB_OVERLAPPING
+                                         : k == 0 ? FMB_TOUCHING
+                                                  : FMB_SEPARATED);
+        if (k <= 0)
+            assert_true(answer.contact[0] <= 1 && answer.contact[1] >= 1);
+        rest.placement[0].position[1] = 0;
+    }
+}
+
 /* A point passes through a turning plate at an irrational time. The interiors meet then, and at no
  * time that the engine tests. */
 static void a_point_through_a_turning_plate_is_never_called_touching(void **state)
@@ -591,6 +651,29 @@ static void bodies_with_a_common_centre(void **state)
         assert_true(answer.gap.bounds[0] <= -known[k].depth + 0x1p-52);
         assert_true(answer.gap.bounds[1] >= -known[k].depth - 0x1p-52);
         assert_true(answer.gap.bounds[1] - answer.gap.bounds[0] <= 2e-12);
+    }
+}
+
+/* A point on a circle passes another point that is some ulps beside the circle. The points have no
+ * edges: only the direction between them separates them. */
+static void points_pass_each_other_closely(void **state)
+{
+    static const double end[] = {1, 0.9, 0.7};
+    for (int k = 0; k < 6; k++) {
+        struct resting rest;
+        const double beside = k % 2 ? 1 - 0x1p-47 : 1 + 0x1p-47;
+        const double at[2] = {0.6 * beside, 0.8 * beside};
+        for (int f = 0; f < 2; f++)
+            assert_int_equal(fmb_body_make_hull(2, f ? at : (const double[]){1, 0}, 2,
+                                                rest.memory[f], &rest.body[f]),
+                             FMB_OK);
+        rest.placement[0] = (struct fmb_placement){.body = &rest.body[0],
+                                                   .orientation = {1, 0},
+                                                   .orientation_count = 2,
+                                                   .end_orientation = {1, end[k / 2]},
+                                                   .end_count = 4};
+        rest.placement[1] = (struct fmb_placement){.body = &rest.body[1]};
+        expect(rest.placement, FMB_SEPARATED, 0, 0);
     }
 }
 
@@ -904,11 +987,13 @@ int main(void)
         cmocka_unit_test(bodies_on_one_turntable),
         cmocka_unit_test(doors_hang_on_their_posts),
         cmocka_unit_test(cubes_tumble_over_an_edge),
+        cmocka_unit_test(rounded_bodies_rest_and_hang),
         cmocka_unit_test(a_point_through_a_turning_plate_is_never_called_touching),
         cmocka_unit_test(windows_join),
         cmocka_unit_test(straight_motion_as_an_end),
         cmocka_unit_test(the_end_of_a_graze_is_that_of_exact_poses),
         cmocka_unit_test(bodies_with_a_common_centre),
+        cmocka_unit_test(points_pass_each_other_closely),
         cmocka_unit_test(numbers_of_any_size),
         cmocka_unit_test(random_windows_agree_with_static_poses),
         cmocka_unit_test(scenes_give_the_answers_of_single_pairs),

@@ -1,6 +1,7 @@
 #include "turn_decision.h"
 
 #include "aabb.h"
+#include "integer.h"
 #include "programs.h"
 
 #include <math.h>
@@ -9,6 +10,12 @@
 /* Short intervals are left to integers, which divide them down to the least length. Relative to the
  * window, an end of a contact is at most short_interval too far out. */
 static const double short_interval = 0x1p-41, least_interval = 0x1p-50;
+
+/* A bound in doubles that is closer to 0 than this, relative to the reach, may be negative only
+ * because it counts some 2^-46 for rounding. A search at one time counts less for frames with a
+ * radius (support_round_verdict()), so that it may be sure at the middles of thousands of intervals
+ * over which the bound is negative. Integers decide such intervals together. */
+static const double close_bound = 0x1p-43;
 
 enum {
     /* The work of a decision, in searches in doubles, before it is given up without a verdict. */
@@ -41,6 +48,13 @@ void turn_end(struct turn_decision *decision)
 }
 
 /* ---- Verdicts at one time ---- */
+
+/* Returns the middle, rounded down to a multiple of 2^-52 so that 1 - s is exact (the length of an
+ * interval next to a known contact need not be a power of two). */
+static double middle_of(struct turn_interval interval)
+{
+    return floor(0.5 * (interval.lo + interval.hi) * 0x1p52) * 0x1p-52;
+}
 
 static void remember(struct turn_decision *decision, double at, enum fmb_verdict verdict)
 {
@@ -109,6 +123,13 @@ static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
 
 /* ---- Directions by vertices ---- */
 
+static void begin_exact(struct turn_decision *decision)
+{
+    if (!decision->has_exact)
+        turn_exact_begin(&decision->path, &decision->exact);
+    decision->has_exact = true;
+}
+
 static void add_corners(struct turn_decision *decision, int of, unsigned v0, unsigned v1,
                         unsigned v2, unsigned v3)
 {
@@ -173,15 +194,33 @@ static bool may_separate(const struct turn_decision *decision, unsigned k,
                          struct turn_interval interval)
 {
     struct turn_direction direction;
-    if (!decision->path.pair.usable)
+    if (!decision->path.pair.usable || decision->corners_at >= 0)
         return true;
     turn_direction_of(decision->path.pair.view, &decision->corners[k], &direction);
     return turn_may_separate(&decision->path, &direction, decision->sign[k], interval.lo,
                              interval.hi);
 }
 
-/* Lists the directions to be tried. Frames with a radius have none: directions of their cores do
- * not decide them. */
+/* Begins to try the directions towards the nearest point at one time, which the programs give:
+ * rounded, and exact if frames with a radius touch at that time. A direction that is rounded by u
+ * is off by u^2 in its bound. */
+static void begin_nearest(struct turn_decision *decision, double at)
+{
+    decision->stage = TURN_CORNER;
+    decision->outcome = TURN_OPEN;
+    decision->corner = 0;
+    for (unsigned k = 0; k < 4; k++) {
+        const uint16_t which = k < 2 ? TURN_ROUNDED : TURN_NEAREST;
+        decision->corners[k] = (struct turn_corners){(int) k % 2, {which}};
+        decision->sign[k] = 1;
+    }
+    decision->corner_count = decision->nearest_count;
+    decision->corners_at = at;
+    if (decision->nearest_at != at)
+        begin_programs(decision, at, true);
+}
+
+/* Lists the directions by vertices to be tried. */
 static void begin_corners(struct turn_decision *decision)
 {
     struct turn_features of[2];
@@ -189,8 +228,7 @@ static void begin_corners(struct turn_decision *decision)
     decision->stage = TURN_CORNER;
     decision->outcome = TURN_OPEN;
     decision->corner = decision->corner_count = 0;
-    if (decision->path.pair.rounded)
-        return;
+    decision->corners_at = -1;
     for (int f = 0; f < 2; f++) {
         set_features(decision, f, &of[f]);
         const struct turn_features *on = &of[f];
@@ -207,20 +245,10 @@ static void begin_corners(struct turn_decision *decision)
         for (unsigned j = 0; j < of[1].edges; j++)
             add_corners(decision, 2, of[0].vertex[of[0].edge[i][0]], of[0].vertex[of[0].edge[i][1]],
                         of[1].vertex[of[1].edge[j][0]], of[1].vertex[of[1].edge[j][1]]);
-    if (!decision->has_exact) {
-        turn_exact_begin(&decision->path, &decision->exact);
-        decision->has_exact = true;
-    }
+    begin_exact(decision);
 }
 
 /* ---- Intervals ---- */
-
-/* Returns the middle, rounded down to a multiple of 2^-52 so that 1 - s is exact (the length of an
- * interval next to a known contact need not be a power of two). */
-static double middle_of(struct turn_interval interval)
-{
-    return floor(0.5 * (interval.lo + interval.hi) * 0x1p52) * 0x1p-52;
-}
 
 static void push(struct turn_decision *decision, double lo, double hi)
 {
@@ -253,6 +281,8 @@ static bool add_contact(struct turn_decision *decision, double s, enum fmb_verdi
                         struct turn_interval interval)
 {
     const bool first = s < decision->in[0];
+    if (s >= decision->in[0] && s <= decision->in[1] && decision->phase != TURN_VERDICT)
+        return false;
     decision->in[0] = fmin(decision->in[0], s);
     decision->in[1] = fmax(decision->in[1], s);
     if (verdict == FMB_OVERLAPPING && !decision->overlaps) {
@@ -299,6 +329,19 @@ static void give_up(struct turn_decision *decision)
     pop(decision);
 }
 
+/* out := a direction that doubles represent exactly. */
+static void set_rounded(const struct turn_decision *decision, const struct turn_corners *corners,
+                        struct turn_direction *out)
+{
+    mpz_t m[2][3];
+    integer_each(m, sizeof m, mpz_init);
+    turn_exact_direction(&decision->exact, corners, 1, m);
+    out->of = corners->of;
+    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
+        out->m[0][axis] = mpz_get_d(m[0][axis]);
+    integer_each(m, sizeof m, mpz_clear);
+}
+
 /* Removes the interval in progress, over which the frames are apart, and adds it to the proof if
  * one is wanted. direction: the direction that proves it, or NULL for the corners tried last. */
 static void prove(struct turn_decision *decision, struct turn_interval interval,
@@ -315,6 +358,10 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
         return;
     }
     part->corners = decision->corners[decision->corner - 1];
+    if (part->corners.vertex[0] >= TURN_ROUNDED) {
+        set_rounded(decision, &part->corners, &part->direction);
+        return;
+    }
     part->sign = decision->sign[decision->corner - 1];
     turn_direction_of(decision->path.pair.view, &part->corners, &part->direction);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
@@ -365,12 +412,20 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
     if (verdict == FMB_SEPARATED && sure) {
         const unsigned count =
             turn_directions(&decision->path, decision->nearest.direction, 0, direction);
-        for (unsigned k = 0; k < count; k++)
-            if (turn_distance(&decision->path, &direction[k], interval.lo, interval.hi) > 0) {
+        double most = -INFINITY;
+        for (unsigned k = 0; k < count && !(most > 0); k++) {
+            most =
+                fmax(most, turn_distance(&decision->path, &direction[k], interval.lo, interval.hi));
+            if (most > 0)
                 prove(decision, interval, &direction[k]);
-                return;
-            }
-        if (width > short_interval) {
+        }
+        if (most > 0)
+            return;
+        const bool next_to_contact =
+            interval.hi == decision->in[0] || interval.lo == decision->in[1];
+        const bool close = decision->path.pair.rounded && !decision->bounded && !next_to_contact &&
+                           most > -close_bound * decision->path.pair.reach;
+        if (width > short_interval && !close) {
             if (!decision->proof)
                 remember_apart(decision, interval, middle, &direction[0]);
             divide(decision, interval);
@@ -385,6 +440,8 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         decision->out[1] = fmax(decision->out[1], interval.hi), pop(decision);
     else if (decision->bounded)
         decision->exhausted = true;
+    else if (decision->path.pair.rounded)
+        begin_nearest(decision, middle);
     else
         begin_corners(decision);
 }
@@ -402,6 +459,7 @@ static void take_outcome(struct turn_decision *decision, enum turn_outcome outco
 static void try_corner(struct turn_decision *decision, struct turn_interval interval)
 {
     struct turn_exact *exact = &decision->exact;
+    const double middle = middle_of(interval);
     enum turn_outcome outcome;
     if (exact->trial) {
         if (turn_exact_step(exact, &outcome))
@@ -423,15 +481,19 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
     }
     if (decision->outcome == TURN_APART)
         prove(decision, interval, NULL);
-    else if (decision->outcome != TURN_OPEN)
-        decision->stage = TURN_ENDS;
-    else if (interval.hi - interval.lo <= least_interval)
-        give_up(decision);
-    else
+    else if (decision->outcome == TURN_OPEN && interval.hi - interval.lo > least_interval)
         divide(decision, interval);
+    else if (decision->outcome == TURN_OPEN && decision->corners_at != interval.hi)
+        /* Frames that touch at an end of the interval may part in the direction there. */
+        begin_nearest(decision, decision->corners_at == interval.lo ? interval.hi
+                                : decision->corners_at == middle    ? interval.lo
+                                                                    : middle);
+    else
+        decision->stage = TURN_ENDS;
 }
 
-/* Examines the ends of an interval in which the frames do not overlap. */
+/* Examines the ends of an interval in which the frames do not overlap, or of a shortest interval.
+ */
 static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval);
@@ -452,7 +514,9 @@ static void look_at_ends(struct turn_decision *decision, struct turn_interval in
     }
     const bool both = at_lo != FMB_SEPARATED && at_hi != FMB_SEPARATED;
     const bool any = at_lo != FMB_SEPARATED || at_hi != FMB_SEPARATED || inside != FMB_SEPARATED;
-    if (both || (!rests && (any || !decision->proof))) {
+    if (decision->outcome == TURN_OPEN)
+        give_up(decision);
+    else if (both || (!rests && (any || !decision->proof))) {
         pop(decision);
     } else if (interval.hi - interval.lo > short_interval) {
         divide(decision, interval);
@@ -609,7 +673,9 @@ static void set_touching_gap(struct turn_decision *decision, double s, struct fm
     unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
     if (vec3_dot(decision->toward, decision->toward) > 0)
         count += turn_directions(path, decision->toward, 0, &direction[1]) > 0;
-    begin_corners(decision);
+    decision->corner_count = 0;
+    if (!path->pair.rounded)
+        begin_corners(decision);
     for (unsigned k = 0; k < count + decision->corner_count; k++) {
         double n[FMB_DIM_MAX];
         if (k >= count)
@@ -712,7 +778,19 @@ static bool take_programs(struct turn_decision *decision, struct fmb_answer *ans
         turn_end(decision);
         return true;
     }
-    remember(decision, at, programs_proof(programs)->verdict);
+    const enum fmb_verdict verdict = programs_proof(programs)->verdict;
+    const bool rounded = decision->path.pair.rounded;
+    if (rounded || decision->stage != TURN_CORNER)
+        remember(decision, at, verdict);
+    if (rounded || decision->stage == TURN_CORNER) {
+        begin_exact(decision);
+        turn_exact_take(&decision->exact, programs_proof(programs));
+        decision->nearest_at = at;
+        decision->nearest_count = verdict == FMB_SEPARATED             ? 2
+                                  : rounded && verdict == FMB_TOUCHING ? 4
+                                                                       : 0;
+        decision->corner_count = decision->nearest_count;
+    }
     programs_end(programs, NULL);
     decision->programs = NULL;
     return false;
@@ -812,7 +890,8 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->programs = NULL;
     out->exact.trial = NULL;
     out->looks = out->next_known = out->apart_count = 0;
-    out->looked = -1;
+    out->looked = out->nearest_at = -1;
+    out->nearest_count = 0;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
     memset(out->nearest.direction, 0, sizeof out->nearest.direction);
     for (int k = 0; k < TURN_KNOWN; k++)

@@ -7,16 +7,20 @@
  *             direction may prove that the frames are apart over the interval (turn_distance());
  *             otherwise the interval is divided. If they are apart over a part of it, no time
  *             within this part is examined again.
- *   integers  if the search is unsure, or an interval is shorter than 2^-41: the programs give the
- *             exact verdict at the middle; over the interval, the exact polynomials (turn_exact.h)
- *             of directions given by vertices are tried: for frames with few vertices all normals
- *             of faces and all products of edges, for hulls those near the nearest point.
+ *   integers  if the search is unsure, the bound of frames with a radius is close to 0, or an
+ *             interval is shorter than 2^-41: the programs give the exact verdict at the middle;
+ *             over the interval, the exact polynomials (turn_exact.h) of directions given by
+ *             vertices are tried: for frames with few vertices all normals of faces and all
+ *             products of edges, for hulls those near the nearest point. For frames with a radius,
+ *             and over the shortest intervals, the directions towards the exact nearest point are
+ *             tried, fixed in either frame.
  *
  * The verdict is OVERLAPPING if the frames overlap at an examined time. Otherwise the intervals
  * cover the window, and the frames do not overlap in any of them; the verdict is TOUCHING if they
  * touch at an examined time. A pair has no verdict if integers do not decide a shortest interval:
  * frames that touch at a single time that is not an end of an interval, frames that cross at such a
- * time and are not transversal, and frames with a radius that doubles do not decide.
+ * time and are not transversal, and frames with a radius that stay in contact in a direction that
+ * is fixed in neither frame.
  *
  * The contact is enclosed from both sides: on each side, the frames are apart up to a time that is
  * at most 2^-41 from a time at which they meet.
@@ -82,6 +86,9 @@ struct turn_decision {
     unsigned apart_count;                   /* of all there were; the oldest are replaced */
     struct turn_exact exact;
     bool has_exact;
+    double nearest_at;         /* the time of the nearest point that it was given, or -1 */
+    unsigned nearest_count;    /* of directions towards it */
+    double corners_at;         /* the time for which they were wanted, or -1 */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
     signed char sign[TURN_CORNERS];

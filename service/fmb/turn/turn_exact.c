@@ -8,11 +8,22 @@
  * the relative interior of that frame has no point with the greatest (least) n . x, and the two
  * relative interiors do not meet. n = N m is never 0. A product of edges is known not to be 0 if
  * all coefficients of one of its coordinates are of one sign. n . x is not constant on a frame that
- * is solid, nor on the frame in which n is fixed if m . x differs between two of its vertices. */
+ * is solid, nor on the frame in which n is fixed if m . x differs between two of its vertices.
+ *
+ * Radii, R their sum. If n = N m, the frames are apart where n . (b - a) > R |n|, and |n| is |m|
+ * |q_A|^2 |q_B|^2 with the positive factors of the polynomial: the coefficients of R |m| |q_A|^2
+ * |q_B|^2 are subtracted. If R |m| is not a whole number of units, an upper bound takes its place
+ * that is less than 2^-ROOT_BITS of a unit too large. (Along such a direction the frames never rest
+ * on each other, since n . (b - a) has rational coefficients.) Frames with a radius are solid. */
 #include "turn_exact.h"
 
 #include "integer.h"
 #include "memory.h"
+#include "programs.h"
+
+#include <float.h>
+
+enum { ROOT_BITS = 64 };
 
 /* ---- Integers ---- */
 
@@ -43,6 +54,7 @@ void turn_exact_begin(const struct turn_path *path, struct turn_exact *out)
                         out->unit);
     }
     mpz_clears(other[0], other[1], other[2], NULL);
+    integer_set_sum(out->radius, frames->a.frame->radius, frames->b.frame->radius, out->unit);
 }
 
 static void end_trial(struct turn_exact *exact);
@@ -165,12 +177,41 @@ static void get_difference(const struct turn_exact *exact, int f, unsigned from,
         mpz_sub(out[axis], out[axis], scratch[axis]);
 }
 
+void turn_exact_take(struct turn_exact *exact, const struct programs_proof *proof)
+{
+    mpz_t divisor;
+    mpz_init(divisor);
+    for (int f = 0; f < 2; f++) {
+        const struct support_turn *turn = &proof->integers->side[f].turn;
+        mpz_t *m = exact->nearest[f];
+        for (int j = 0; j < 3; j++) {
+            mpz_set(m[j], proof->normal[j]);
+            for (int i = 0; i < 3 && turn->turned; i++)
+                (i == 0 ? mpz_mul : mpz_addmul)(m[j], turn->row[i][j], proof->normal[i]);
+        }
+        mpz_gcd(divisor, m[0], m[1]);
+        mpz_gcd(divisor, divisor, m[2]);
+        for (int j = 0; j < 3 && mpz_sgn(divisor) != 0; j++)
+            mpz_divexact(m[j], m[j], divisor);
+    }
+    mpz_clear(divisor);
+}
+
 /* Sets m, or e and f. Returns false if one of them is 0. */
 static bool set_direction(const struct turn_exact *exact, const struct turn_corners *corners,
                           int sign, struct work *work)
 {
     const uint16_t *v = corners->vertex;
-    if (corners->of == 2) {
+    if (v[0] >= TURN_ROUNDED) {
+        size_t bits = DBL_MANT_DIG;
+        for (int axis = 0; axis < 3; axis++) {
+            mpz_set(work->m[0][axis], exact->nearest[corners->of][axis]);
+            if (mpz_sizeinbase(work->m[0][axis], 2) > bits)
+                bits = mpz_sizeinbase(work->m[0][axis], 2);
+        }
+        for (int axis = 0; axis < 3 && v[0] == TURN_ROUNDED; axis++)
+            mpz_tdiv_q_2exp(work->m[0][axis], work->m[0][axis], bits - DBL_MANT_DIG);
+    } else if (corners->of == 2) {
         for (int f = 0; f < 2; f++)
             get_difference(exact, f, v[2 * f], v[2 * f + 1], work->part, work->m[f]);
     } else if (exact->path->pair.dim == 2) {
@@ -340,13 +381,36 @@ static void end_scan(struct turn_trial *trial)
     trial->next = 0;
 }
 
+/* value := (value - R |m| norm) 2^ROOT_BITS, or less. */
+static void subtract_radius(const struct turn_exact *exact)
+{
+    struct work *work = &exact->trial->work;
+    mpz_ptr root = work->least, left = work->other;
+    mpz_set_ui(root, 0);
+    add_dot(work->m[0], work->m[0], root);
+    mpz_mul(root, root, exact->radius);
+    mpz_mul(root, root, exact->radius);
+    mpz_mul_2exp(root, root, 2 * ROOT_BITS);
+    mpz_sqrtrem(root, left, root);
+    if (mpz_sgn(left) != 0)
+        mpz_add_ui(root, root, 1);
+    mpz_mul_2exp(root, root, exact->trial->bits);
+    for (int k = 0; k < 6; k++) {
+        mpz_mul_2exp(work->value[k], work->value[k], ROOT_BITS);
+        mpz_submul(work->value[k], work->norm[k], root);
+    }
+}
+
 static enum turn_outcome outcome_of(const struct turn_exact *exact)
 {
     const struct turn_trial *trial = exact->trial;
     const struct support_view *view = exact->path->pair.view;
-    const bool solid = view[0].solid || view[1].solid;
+    const bool rounded = mpz_sgn(exact->radius) != 0;
+    const bool solid = view[0].solid || view[1].solid || rounded;
     const bool weak = trial->of < 2 ? trial->splits || solid : trial->splits && solid;
     int positive = 0, negative = 0;
+    if (rounded && trial->scans > 0)
+        subtract_radius(exact);
     for (int k = 0; k < 6; k++) {
         positive += mpz_sgn(trial->work.value[k]) > 0;
         negative += mpz_sgn(trial->work.value[k]) < 0;

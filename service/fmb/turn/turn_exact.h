@@ -1,5 +1,5 @@
 /* Directions that separate a pair that turns over an interval, in integers: the polynomials of
- * turn_path.h, for directions given by vertices. No shared state. */
+ * turn_path.h, for directions given by vertices, or towards the nearest point. No shared state. */
 #ifndef FMB_TURN_EXACT_H
 #define FMB_TURN_EXACT_H
 
@@ -15,6 +15,10 @@ enum turn_outcome {
     TURN_REST   /* they may touch, and do not overlap */
 };
 
+/* In place of the first vertex of a direction that is fixed in a frame: the direction towards the
+ * nearest point, or the same rounded to doubles. */
+enum { TURN_NEAREST = UINT16_MAX, TURN_ROUNDED = UINT16_MAX - 1 };
+
 struct turn_trial;
 
 struct turn_exact {
@@ -22,12 +26,17 @@ struct turn_exact {
     struct turn_trial *trial; /* the direction in progress, or NULL */
     struct support_integers integers;
     long unit; /* of lengths */
-    mpz_t q[2][2][4], offset[3], drift[3];
+    mpz_t q[2][2][4], offset[3], drift[3], radius, nearest[2][3];
 };
 
 /* Sets the integers of a pair, which allocates through GMP until turn_exact_end(). */
 void turn_exact_begin(const struct turn_path *path, struct turn_exact *out);
 void turn_exact_end(struct turn_exact *exact);
+
+/* Sets the direction towards the nearest point, in the coordinates of both frames, from the proof
+ * of a complete decision by it (programs_begin_nearest()). */
+struct programs_proof;
+void turn_exact_take(struct turn_exact *exact, const struct programs_proof *proof);
 
 /* m := integer multiples of the vectors of a direction by vertices, or of its opposite if sign is
  * -1: m, or e and f (turn_path.h). In: all are 0. */

@@ -174,7 +174,8 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
 
 /* For a vertex of one frame and a face of the other, the direction is fixed in the frame of the
  * face, which has more supporting vertices. For two edges that are not parallel it is their
- * product. For two parallel edges either frame may do. */
+ * product. For two parallel edges either frame may do; for frames with a radius too, since a frame
+ * may turn about a vertex. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
                          double slack, struct turn_direction out[3])
 {
@@ -202,9 +203,12 @@ unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_
             return 3;
         }
     }
-    if (count[1] > count[0])
+    if (count[1] > count[0]) {
+        const struct turn_direction of_a = out[0];
         out[0] = out[1];
-    return count[0] == count[1] ? 2 : 1;
+        out[1] = of_a;
+    }
+    return count[0] == count[1] || path->pair.rounded ? 2 : 1;
 }
 
 void turn_normal(const struct turn_path *path, const struct turn_direction *direction,
