@@ -49,6 +49,8 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
     const double enough = fmin(gap->at.bounds[1], gap->best.bounds[1]) - gap->tight;
     double least = next->least;
     gap->at.time = gap->path->pair.at * gap->path->pair.frames->duration;
+    if (gap->at.has_witness)
+        gap->at.bounds[1] = (gap->at.bounds[1] + gap->travel) * (1 + 0x1p-52);
     /* The depth of frames that are slightly apart is 0, and the direction proves a distance. */
     gap->at.bounds[0] = fmin(gap->at.bounds[0], gap->at.bounds[1]);
     /* Also tries the vertices that become supporting within the piece, and the last good direction.
@@ -151,6 +153,23 @@ static void look(struct turn_gap *gap, struct turn_piece piece)
 
 /* ---- All pieces ---- */
 
+/* Returns an upper bound of how far the points of both frames move in the error of a time in
+ * seconds. A quaternion turns a frame by at most 2 |q0| |q1| / |q(s)|^2 radians for each unit of s.
+ * The lengths of q0 and q1 differ by a factor of at most 4, and |q(s)|^2 is at least half the
+ * square of the lesser: at most 16. */
+static double travel_of(const struct turn_path *path)
+{
+    const double duration = path->pair.frames->duration;
+    const double late = duration < 0x1p-900 ? fmin(0x1p-1073 / duration, 1) : 0x1p-53;
+    double way = 0;
+    for (int f = 0; f < 2; f++) {
+        way += 16 * path->pair.view[f].reach;
+        for (int axis = 0; axis < path->pair.dim; axis++)
+            way += fabs(path->position[f][1][axis] - path->position[f][0][axis]);
+    }
+    return late * way * (1 + 0x1p-40);
+}
+
 void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double known,
                     double farthest, struct turn_gap *out)
 {
@@ -162,6 +181,7 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->work = NULL;
     out->has_good = false;
     out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
+    out->travel = travel_of(path);
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;
     /* No point of D is farther from the origin than the reach and the radii. */

@@ -24,6 +24,7 @@ struct turn_gap {
     struct turn_piece piece[TURN_PIECES];
     unsigned count, looks;
     double tight;    /* the greatest width */
+    double travel;   /* of both frames in the error of a time */
     double farthest; /* a gap that is surely greater need not be enclosed */
     struct fmb_gap best;
     struct turn_direction good; /* the last that bounded the gap over a piece tightly */
