@@ -81,13 +81,16 @@ packages_of() {
 # make_there DEPS ARGUMENTS...: runs make in the copy, with the tools of these packages only.
 make_there() {
     local tools=$BATS_TEST_TMPDIR/tools package name
-    mkdir -p "$tools"
-    for name in $common; do ln -sf "$(command -v "$name")" "$tools/$name"; done
-    for package in $(packages_of "$1"); do
-        for name in $(brings "$package"); do ln -sf "$tool" "$tools/$name"; done
-    done
-    printf '#!/bin/sh\n' > "$tools/sleep"
-    chmod +x "$tools/sleep"
+    if [ ! -d "$tools" ]; then
+        mkdir "$tools"
+        # shellcheck disable=SC2046,SC2086
+        ln -s $(type -P $common) "$tools"
+        for package in $(packages_of "$1"); do
+            for name in $(brings "$package"); do ln -sf "$tool" "$tools/$name"; done
+        done
+        printf '#!/bin/sh\n' > "$tools/sleep"
+        chmod +x "$tools/sleep"
+    fi
     shift
     run env -u MAKEFLAGS -u MAKELEVEL -u CMOCKA_MESSAGE_OUTPUT PATH="$tools" make -s -j2 -C "$tree" python=python3 DESTDIR="$tree/build/dest dir" "$@"
     # No path was split: no argument ends with its first part, or begins with the second.
@@ -125,7 +128,7 @@ included() {
 # suffices DEPS: makes each target that is listed after it. Of several targets that run one script, it makes one.
 # It makes no release, which needs a dated section in the change log (system/library.bats) and builds what 'deb' builds.
 suffices() {
-    local target
+    local target machine folder header
     [ "$(packages_of "$1")" ]
     [ "$1" = deps-bench ] || export PEERS=none # which may be installed here
     # What earlier targets leave, and 'make deps-aarch64'.
@@ -140,8 +143,11 @@ suffices() {
     # Each header belongs to the compiler, to the C library, or to one of the packages. Debian 13 has a part of
     # libglib2.0-dev in libgio-2.0-dev.
     command -v dpkg > /dev/null || return 0
+    machine=$(gcc -dumpmachine)
     included | while read -r header; do
-        find /usr/include/{,"$(gcc -dumpmachine)/",glib-2.0/}"$header" 2> /dev/null | head -n 1
+        for folder in /usr/include{,"/$machine",/glib-2.0}; do
+            if [ -e "$folder/$header" ]; then echo "$folder/$header"; break; fi
+        done
     done | xargs dpkg -S | sed 's/: .*//; s/:[a-z0-9]*//g' | sort -u | grep -vxF -e libc6-dev -e linux-libc-dev -e libgio-2.0-dev |
         grep -vxFf <(packages_of "$1" | tr ' ' '\n') && return 1 || true
     rm -rf "$tree/build"

@@ -20,8 +20,11 @@ static struct page *open_page(enum page_kind kind)
 /* Returns the bytes that an element holds, and a 0; to be freed. */
 static char *unpack(const char *page, const char *id, size_t *size)
 {
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     enum { BYTES_MAX = 1 << 27 };
+    unsigned char value[128] = {0};
+    for (unsigned char k = 0; k < 64; k++)
+        value[(int) digits[k]] = k;
     char tag[60];
     snprintf(tag, sizeof tag, "<script type=\"text/plain\" id=\"%s\">\n", id);
     const char *at = strstr(page, tag);
@@ -38,7 +41,7 @@ static char *unpack(const char *page, const char *id, size_t *size)
     for (; at < end; at += 4) {
         unsigned bits = 0, count = 0;
         for (int k = 0; k < 4; k++) {
-            bits = bits << 6 | (at[k] == '=' ? 0 : (unsigned) (strchr(digit, at[k]) - digit));
+            bits = bits << 6 | value[at[k] & 127];
             count += at[k] != '=';
         }
         for (unsigned k = 0; k + 1 < count; k++)

@@ -123,8 +123,8 @@ static void pairs_do_not_wait_for_scenes_of_their_client(void **state)
 {
     static const int64_t order[] = {3, 4, 1, 2};
     service.tick_ns = US;
-    service_query_scene(CHEAP, 1, 300);
-    service_query_scene(CHEAP, 2, 300);
+    service_query_scene(CHEAP, 1, 160);
+    service_query_scene(CHEAP, 2, 160);
     assert_int_equal(server_work(service.server), SERVER_WORKING);
     assert_int_equal(service.count, 0);
     service_query_pair(CHEAP, 3);
@@ -204,8 +204,8 @@ static void scenes_share_time(void **state)
 
 static void pairs_pass_long_scenes(void **state)
 {
-    service.tick_ns = 10 * US;
-    service_query_scene(COSTLY, 1, 480);
+    service.tick_ns = 40 * US;
+    service_query_scene(COSTLY, 1, 240);
     for (int i = 0; i < 20; i++)
         server_work(service.server);
     for (int i = 0; i < 10; i++) {
@@ -278,15 +278,15 @@ static void the_last_job_stops_early(void **state)
 static void more_scenes_than_jobs_are_served(void **state)
 {
     enum { CLIENTS = 3 * JOBS };
-    service.tick_ns = 10 * US;
+    service.tick_ns = 40 * US;
     for (int64_t client = 1; client <= CLIENTS; client++)
-        service_query_scene(client, 1, 480);
+        service_query_scene(client, 1, 240);
     service_settle();
     expect_all_ok(CLIENTS);
     int stopped = 0;
     for (int i = 0; i < CLIENTS; i++) {
-        assert_in_range(service.result[i].end_pair, 1, 480 * 479 / 2);
-        stopped += service.result[i].end_pair < 480 * 479 / 2;
+        assert_in_range(service.result[i].end_pair, 1, 240 * 239 / 2);
+        stopped += service.result[i].end_pair < 240 * 239 / 2;
     }
     assert_in_range(stopped, 1, CLIENTS - 1);
 }
