@@ -3,6 +3,7 @@
 #ifndef FMB_LIMBS_NUMBER_H
 #define FMB_LIMBS_NUMBER_H
 
+#include "inlined.h"
 #include "integer.h"
 #include "limbs.h"
 
@@ -10,8 +11,13 @@
 #include <string.h>
 
 /* Always inlined: sums and products of a few limbs. */
+#ifdef INLINED_NEVER
+#define LIMBS_INLINE static inline
+#define LIMBS_UNROLL
+#else
 #define LIMBS_INLINE static inline __attribute__((always_inline))
 #define LIMBS_UNROLL _Pragma("GCC unroll 6")
+#endif
 
 /* Not every file uses all functions. */
 #define LIMBS_FUNCTION static __attribute__((unused))

@@ -7,14 +7,15 @@
 #ifndef FMB_INLINED_H
 #define FMB_INLINED_H
 
-#ifndef INLINED_NOT
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
-#define INLINED_NOT
+#define INLINED_NEVER
 #endif
 #elif defined(__SANITIZE_ADDRESS__)
-#define INLINED_NOT
+#define INLINED_NEVER
 #endif
+#if defined(INLINED_NEVER) && !defined(INLINED_NOT)
+#define INLINED_NOT
 #endif
 
 /* FLATTEN also inlines what a function calls by a pointer that is a constant. */
