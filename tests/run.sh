@@ -27,13 +27,16 @@ waiting='cli/page.bats system/replay_bus.bats system/daemon.bats system/service.
 waiting="$waiting system/examples.bats"
 
 # Those that take longest, which begin first; and what 'make test-fast' leaves out.
-first='system/service.bats system/daemon.bats system/record.bats fuzz/fuzz.bats cli/page.bats system/bus.bats'
-first="$first system/replay_bus.bats system/fairness.bats system/soak.bats cli/query.bats cli/replay.bats"
-first="$first system/examples.bats cli/campaign.bats test_engine_small_world test_client_query test_engine_triangle"
-first="$first test_engine_work test_server_turns test_engine_scene test_limbs test_client_bad cli/log.bats"
+first='fuzz/fuzz.bats cli/campaign.bats cli/page.bats test_engine_small_world cli/build.bats test_client_query'
+first="$first test_engine_round system/service.bats system/record.bats system/daemon.bats system/replay_bus.bats"
+first="$first cli/scene.bats cli/check_path.bats cli/query.bats cli/replay.bats system/library.bats system/fairness.bats"
+first="$first system/soak.bats test_engine_wants test_engine_hard test_answer_scene test_engine_work test_engine_hull"
+first="$first cli/log_results.bats test_checked test_client_pace test_queue test_replay_run system/examples.bats"
+first="$first test_engine_triangle test_server_turns test_engine_scene test_engine_batch test_page"
 slow='system/soak.bats system/fairness.bats system/record.bats system/replay_bus.bats cli/replay.bats'
-slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats system/examples.bats system/library.bats"
-slow="$slow system/python.bats system/bus.bats cli/page.bats cli/campaign.bats cli/bench.bats"
+slow="$slow cli/mesh.bats cli/log.bats cli/log_cut.bats cli/log_scene.bats cli/log_results.bats system/examples.bats"
+slow="$slow system/library.bats system/python.bats system/bus.bats cli/page.bats cli/campaign.bats cli/bench.bats"
+slow="$slow cli/build.bats cli/check_path.bats"
 
 # A suite writes TAP; 77 means that it cannot run here.
 #   unit BUILD NAME | bats BUILD FILE | netns BUILD FILE
