@@ -27,9 +27,11 @@ static void describe_pair_result(const lcm_eventlog_event_t *event)
            result.client_id, result.sequence_number, result.server_id);
     printf(", \"status\": %d, \"method\": %d, \"verdicts\": [%d]", (int) result.status,
            (int) result.method, (int) result.verdict);
-    printf(", \"times\": %d, \"boxes\": %d, \"gaps\": %d, \"witnesses\": %d, \"certificate\": %zu",
-           (int) result.num_contact, (int) result.num_box, (int) result.num_gap,
-           (int) result.num_witness, strlen(result.certificate));
+    printf(
+        ", \"times\": %d, \"boxes\": %d, \"gaps\": %d, \"witnesses\": %d, \"points\": %d, "
+        "\"certificate\": %zu",
+        (int) result.num_contact, (int) result.num_box, (int) result.num_gap,
+        (int) result.num_witness, (int) result.num_point, strlen(result.certificate));
     fmb_msgs_pair_result_t_decode_cleanup(&result);
 }
 

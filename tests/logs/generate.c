@@ -24,6 +24,7 @@ static const struct kind kinds[] = {
     {"hard-2d", "the campaigns' hard pairs in 2D", kind_hard_plane},
     {"hard-3d", "the campaigns' hard pairs in 3D, at rest", kind_hard_space},
     {"hard-3d-moving", "the campaigns' hard pairs in 3D, moving", kind_hard_moving},
+    {"turns", "pairs that turn, of whole numbers", kind_turns},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 

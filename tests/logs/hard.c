@@ -7,6 +7,9 @@
 #include "log_client.h"
 #include "family.h"
 #include "parts.h"
+#include "turn_family.h"
+
+#include <string.h>
 
 static const uint64_t seed = 20240101;
 
@@ -17,6 +20,8 @@ struct hard {
     struct scene_query scene;
     struct scene_result scene_result;
 };
+
+enum { AT_REST = 1, MOVING = 2, TURNING = 4 };
 
 static struct question draw_question(const struct family *family, const struct cell *cell)
 {
@@ -50,17 +55,23 @@ static void query_again(struct hard *hard, const struct pair_query *query)
     log_client_pair(&hard->log_client, &swapped, &result);
 }
 
-static void query_pair(struct hard *hard, const struct question *question)
+/* Half of the pairs that turn, which methods in doubles refuse, are for the service's own choice.
+ */
+static void query_pair(struct hard *hard, const struct question *question, bool turns)
 {
     struct draw *draw = &hard->draw;
     struct pair_query query = {.duration = question->duration, .method = draw_method(draw)};
     struct pair_result result;
     const bool again = draw_int(draw, 0, 7) == 0;
+    if (turns && draw_coin(draw))
+        query.method = 0;
     if (draw_coin(draw))
         query.want |= FMB_WANT_BOX;
     if (draw_int(draw, 0, 3) == 0)
         query.want |= FMB_WANT_CERTIFICATE;
     query.want |= draw_gap(draw, query.method);
+    if (turns && fmb_method_by_number(query.method)->certain && draw_coin(draw))
+        query.want |= FMB_WANT_POINT;
     part_place(&question->a, again ? ++hard->body_id : 0, &query.placement[0]);
     part_place(&question->b, again ? ++hard->body_id : 0, &query.placement[1]);
     log_client_pair(&hard->log_client, &query, &result);
@@ -110,11 +121,35 @@ static void query_family(struct hard *hard, const struct family *family, int dim
             continue;
         const struct question question = draw_question(family, &cells[i]);
         if (moving)
-            query_pair(hard, &question);
+            query_pair(hard, &question, false);
         else
             append_pair(&hard->scene, &question);
     }
     query_scene(hard);
+}
+
+/* Pairs one by one, and those of a second of both dimensions once more in scenes. Sines, cosines
+ * and powers differ between machines: families that draw them are left out. */
+static void query_turning_family(struct hard *hard, const struct family *family)
+{
+    static const char *const whole[] = {"turn-table", "turn-lift",  "turn-land",  "turn-tumble",
+                                        "turn-door",  "turn-whole", "turn-graze", "turn-straight"};
+    bool drawn = strcmp(family->name, "turn-flat") == 0;
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++)
+        drawn = drawn || strncmp(family->name, whole[i], strlen(whole[i])) == 0;
+    for (int dim = 3; dim >= (family->cells & FAMILY_3D ? 3 : 2) && drawn; dim--) {
+        const struct cell cell = {.dim = dim};
+        struct draw draw = cell_draw(seed, family->name, &cell, 0);
+        begin_scene(hard);
+        for (int n = 0; n < (dim == 2 ? 10 : 3); n++) { /* few families are in 2D */
+            struct question question;
+            family_draw(family, &cell, &draw, &question);
+            query_pair(hard, &question, true);
+            if (question.duration == 1)
+                append_pair(&hard->scene, &question);
+        }
+        query_scene(hard);
+    }
 }
 
 static bool query_families(struct tape *tape, int dim, int motions)
@@ -130,12 +165,12 @@ static bool query_families(struct tape *tape, int dim, int motions)
     for (int moving = 0; moving < 2; moving++)
         for (size_t i = 0; family_at(i) && motions >> moving & 1; i++)
             query_family(&hard, family_at(i), dim, moving);
+    for (size_t i = 0; family_turning_at(i) && motions == TURNING; i++)
+        query_turning_family(&hard, family_turning_at(i));
     instance_beat(&instance);
     instance_close(&instance);
     return true;
 }
-
-enum { AT_REST = 1, MOVING = 2 };
 
 bool kind_hard_plane(struct tape *tape)
 {
@@ -150,4 +185,9 @@ bool kind_hard_space(struct tape *tape)
 bool kind_hard_moving(struct tape *tape)
 {
     return query_families(tape, 3, MOVING);
+}
+
+bool kind_turns(struct tape *tape)
+{
+    return query_families(tape, 0, TURNING);
 }

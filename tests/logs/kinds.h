@@ -10,7 +10,7 @@
 /* False: out of memory. */
 typedef bool kind_function(struct tape *tape);
 
-kind_function kind_hard_plane, kind_hard_space, kind_hard_moving;
+kind_function kind_hard_plane, kind_hard_space, kind_hard_moving, kind_turns;
 
 struct kind {
     const char *name;

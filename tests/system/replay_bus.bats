@@ -94,7 +94,7 @@ event() {
 
 @test "replays through a service match those in process, for every kind of log" {
     start_fmbd
-    for kind in arm stack crowd hard-2d hard-3d hard-3d-moving refused clients foreign; do
+    for kind in arm stack crowd hard-2d hard-3d hard-3d-moving turns refused clients foreign; do
         generate $kind $kind.log
         as_in_process $kind.log -- \
             '.queries > 0 and .different == 0 and .bus.answered == .queries' \
