@@ -401,8 +401,8 @@ enum fmb_want {
  * Pairs in which a placement has an end: the gap is the least at any one time, so an overlapping
  * pair has minus its greatest depth at one time. time is the time of the least gap, for all
  * verdicts and without witness points too. The direction proves the lower bound at this time only;
- * the witness points of a separated pair prove the upper bound. The work is limited. If it does not
- * suffice, or lengths exceed 2^200 or are all below 2^-200, the enclosure is wider.
+ * the witness points of a separated pair prove the upper bound. The enclosure is wider if
+ * the search reaches its limit of work, if lengths exceed 2^200, or if all are below 2^-200.
  *
  * Order. The swapped pair has the same bounds, the negated direction, and the points and frames
  * exchanged. If two placements are equal in all numbers, both orders are the same pair and have the

@@ -80,7 +80,7 @@
  * one. Along axes with known signs (slabs_second.h) the velocities are equal, and nothing
  * underflows. */
 
-/* gcc 13 warns that loops over the axes, of which there are 2 or 3, could leave their array. */
+/* gcc 13 warns that loops over the 2 or 3 axes could exceed their array. */
 #if __GNUC__ == 13
 #pragma GCC diagnostic ignored "-Warray-bounds"
 #pragma GCC diagnostic ignored "-Wstringop-overread"

@@ -6,7 +6,8 @@ struct quaternion rotation_scaled(struct quaternion q)
 {
     const int exponent = ilogb(quaternion_largest(q));
     const int first = exponent < -1000 ? -1000 : exponent;
-    const double scale = ldexp(1, -first), rest = ldexp(1, first - exponent); /* rest: mostly 1 */
+    /* rest is 1 unless exponent < -1000. */
+    const double scale = ldexp(1, -first), rest = ldexp(1, first - exponent);
     return (struct quaternion){q.w * scale * rest, q.x * scale * rest, q.y * scale * rest,
                                q.z * scale * rest};
 }

@@ -86,9 +86,9 @@ void integer_each(void *numbers, size_t bytes, void (*call)(mpz_ptr));
 /* out := x / 2^unit. In: unit <= x.exponent. */
 void integer_set(mpz_t out, struct dyadic x, long unit);
 
-/* out := v, scaled by a power of two to a largest coordinate in [1/32, 1/16), so that |out| < 1/9.
- * Each coordinate is truncated to 53 bits, off by at most 2^-52 of itself, and by 2^-1074 if it is
- * far smaller than the largest. */
+/* out := v, scaled by a power of two so that the largest coordinate is in [1/32, 1/16) and
+ * |out| < 1/9. Each coordinate is truncated to 53 bits. Its error is at most 2^-52 of itself, plus
+ * 2^-1074 if it is far smaller than the largest coordinate. */
 void integer_round_vector(mpz_t v[3], double out[3]);
 
 /* out := (x + y) / 2^unit. In: both are multiples of 2^unit. */

@@ -31,8 +31,8 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 #include <immintrin.h>
 #endif
 
-/* The lanes of x and y with these indices; those of y come after those of x. gcc 11 has another
- * function. */
+/* The lanes of x and y with these indices. The lanes of y are numbered after the lanes of x. gcc 11
+ * lacks __builtin_shufflevector(). */
 #if defined(__clang__) || __GNUC__ >= 12
 #define SHUFFLED(x, y, ...) __builtin_shufflevector(x, y, __VA_ARGS__)
 #else

@@ -11,10 +11,11 @@
  * window, an end of a contact is at most short_interval too far out. */
 static const double short_interval = 0x1p-41, least_interval = 0x1p-50;
 
-/* A bound in doubles that is closer to 0 than this, relative to the reach, may be negative only
- * because it counts some 2^-46 for rounding. A search at one time counts less for frames with a
- * radius (support_round_verdict()), so that it may be sure at the middles of thousands of intervals
- * over which the bound is negative. Integers decide such intervals together. */
+/* A negative bound in doubles that is closer to 0 than this, relative to the reach, may be negative
+ * only because about 2^-46 is subtracted for rounding. A search at one time subtracts less for
+ * frames with a radius (support_round_verdict()). So it may prove a verdict at the middles of
+ * thousands of intervals over which the bound is negative. Integers decide all these intervals at
+ * once. */
 static const double close_bound = 0x1p-43;
 
 enum {
@@ -25,7 +26,7 @@ enum {
     VERTICES_OF_LOOK = 64, /* so many vertices cost one more in either */
     LOOKS_BOUNDED = 200,
     LOOKS_STEP = 64,
-    CORNERS_STEP = 64,  /* directions by vertices that a step tries in doubles */
+    CORNERS_STEP = 64,  /* directions by vertices that a step tests in doubles */
     DIRECTIONS_MAX = 20 /* tried towards an end of the contact */
 };
 
@@ -82,8 +83,9 @@ static void begin_programs(struct turn_decision *decision, double s, bool neares
                              : programs_begin(pair, 0, first, count);
 }
 
-/* Searches in doubles at s. Returns the verdict, or 0. A simplex with the origin on its boundary
- * proves nothing, as of frames with a common centre; a depth that is not 0 proves an overlap. */
+/* Searches in doubles at s. Returns the verdict, or 0. If the origin is on the boundary of the
+ * simplex, as for frames with a common centre, the search proves nothing. Then a depth that is
+ * greater than 0 proves an overlap. */
 static enum fmb_verdict look(struct turn_decision *decision, double s)
 {
     const struct support_pair *pair = &decision->path.pair;
@@ -189,7 +191,7 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
         }
 }
 
-/* Returns whether direction k might separate the frames over an interval, by doubles. */
+/* Returns whether direction k might separate the frames over an interval, according to doubles. */
 static bool may_separate(const struct turn_decision *decision, unsigned k,
                          struct turn_interval interval)
 {
@@ -201,9 +203,9 @@ static bool may_separate(const struct turn_decision *decision, unsigned k,
                              interval.hi);
 }
 
-/* Begins to try the directions towards the nearest point at one time, which the programs give:
- * rounded, and exact if frames with a radius touch at that time. A direction that is rounded by u
- * is off by u^2 in its bound. */
+/* Begins to try the directions towards the nearest point at one time, which the programs compute.
+ * The rounded directions are tried first, then the exact directions if frames with a radius touch
+ * at this time. A direction that is rounded by u is off by u^2 in its bound. */
 static void begin_nearest(struct turn_decision *decision, double at)
 {
     decision->stage = TURN_CORNER;
@@ -220,7 +222,7 @@ static void begin_nearest(struct turn_decision *decision, double at)
         begin_programs(decision, at, true);
 }
 
-/* Lists the directions by vertices to be tried. */
+/* Lists the directions by vertices that will be tried. */
 static void begin_corners(struct turn_decision *decision)
 {
     struct turn_features of[2];
@@ -329,7 +331,7 @@ static void give_up(struct turn_decision *decision)
     pop(decision);
 }
 
-/* out := a direction that doubles represent exactly. */
+/* out := the direction, which doubles represent exactly. */
 static void set_rounded(const struct turn_decision *decision, const struct turn_corners *corners,
                         struct turn_direction *out)
 {
@@ -368,9 +370,7 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
         part->direction.m[0][axis] *= part->sign;
 }
 
-/* Remembers the part of an interval, around its middle, over which a direction separates the
- * frames.
- */
+/* Stores a part of an interval, around its middle, over which a direction separates the frames. */
 static void remember_apart(struct turn_decision *decision, struct turn_interval interval,
                            double middle, const struct turn_direction *direction)
 {
@@ -379,8 +379,8 @@ static void remember_apart(struct turn_decision *decision, struct turn_interval 
         decision->apart[decision->apart_count++ % TURN_KNOWN] = interval;
 }
 
-/* Removes the interval in progress if the frames are known to be apart over all of it, and divides
- * it if they are known to be apart at its middle. Returns whether it did either. */
+/* Removes the interval in progress if the frames are known to be apart over all of it; divides it
+ * if they are known to be apart at its middle. Returns whether it did either. */
 static bool skip_apart(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval);
@@ -446,8 +446,8 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         begin_corners(decision);
 }
 
-/* Frames that rest on each other touch at both ends of the interval and need no other direction. So
- * the ends are examined at the first outcome of this kind. */
+/* If the frames rest on each other, they touch at both ends of the interval, and no other direction
+ * is needed. So the ends are examined after the first TURN_REST. */
 static void take_outcome(struct turn_decision *decision, enum turn_outcome outcome)
 {
     if (outcome == TURN_REST && decision->outcome == TURN_OPEN)
@@ -484,7 +484,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
     else if (decision->outcome == TURN_OPEN && interval.hi - interval.lo > least_interval)
         divide(decision, interval);
     else if (decision->outcome == TURN_OPEN && decision->corners_at != interval.hi)
-        /* Frames that touch at an end of the interval may part in the direction there. */
+        /* Frames that touch at an end of the interval may separate in the direction there. */
         begin_nearest(decision, decision->corners_at == interval.lo ? interval.hi
                                 : decision->corners_at == middle    ? interval.lo
                                                                     : middle);
@@ -492,8 +492,8 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
         decision->stage = TURN_ENDS;
 }
 
-/* Examines the ends of an interval in which the frames do not overlap, or of a shortest interval.
- */
+/* Examines the ends of an interval in which the frames do not overlap, or of a shortest interval
+ * that is undecided. */
 static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = middle_of(interval);
@@ -840,11 +840,12 @@ bool turn_step(struct turn_decision *decision, struct fmb_answer *answer)
     return decision->phase == TURN_COMPLETE;
 }
 
-/* Returns whether the balls about the positions that contain the frames are apart all the time.
- * The difference D of the positions is linear in s. So along a fixed n it is least at an end of the
- * window; n is D where it is shortest, up to rounding. A term of D passes three roundings, its
- * product with n four, |n| and the reaches four: 2^-48 of the magnitudes covers each. If n . D is
- * finite, no product has overflowed; where it or n . n is small, underflow may matter. */
+/* Returns whether two balls, centred at the positions and containing the frames, are apart over the
+ * whole window. The difference D of the positions is linear in s, so for a fixed n, n . D is least
+ * at an end of the window. n is the shortest D, up to rounding. A term of D passes three roundings,
+ * its product with n four, |n| and the reaches four: 2^-48 of the magnitudes covers each. If n . D
+ * is finite, no product has overflowed. If n . D or n . n is small, underflow may matter, and the
+ * function returns false. */
 static bool is_far(const struct frame_pair *frames)
 {
     const struct placed_frame *const of[2] = {&frames->a, &frames->b};

@@ -5,15 +5,16 @@
  *
  *   doubles   a search at the middle (turn_look()) proves an overlap, or gives a direction. The
  *             direction may prove that the frames are apart over the interval (turn_distance());
- *             otherwise the interval is divided. If they are apart over a part of it, no time
- *             within this part is examined again.
+ *             otherwise the interval is divided. If the frames are apart over a part of it, no
+ *             time within this part is examined again.
  *   integers  if the search is unsure, the bound of frames with a radius is close to 0, or an
- *             interval is shorter than 2^-41: the programs give the exact verdict at the middle;
- *             over the interval, the exact polynomials (turn_exact.h) of directions given by
- *             vertices are tried: for frames with few vertices all normals of faces and all
- *             products of edges, for hulls those near the nearest point. For frames with a radius,
- *             and over the shortest intervals, the directions towards the exact nearest point are
- *             tried, fixed in either frame.
+ *             interval is shorter than 2^-41: the programs give the exact verdict at the middle.
+ *             Over the interval, the exact polynomials (turn_exact.h) of several directions are
+ *             tried. If neither frame has a radius, the directions are given by vertices: all
+ *             normals of faces and all products of edges of frames with few vertices; for hulls,
+ *             the normals and products near the nearest point. For frames with a radius, and also
+ *             over the shortest intervals, the directions point towards the exact nearest point
+ *             and are fixed in either frame.
  *
  * The verdict is OVERLAPPING if the frames overlap at an examined time. Otherwise the intervals
  * cover the window, and the frames do not overlap in any of them; the verdict is TOUCHING if they
@@ -28,9 +29,9 @@
  * Box: the union, over pieces of the contact, of the intersections of the boxes of both frames.
  * Gap: turn_gap.h.
  *
- * Steps: a search in doubles takes microseconds, an exact direction of a small pair tens of them; a
- * step of a direction of large hulls, or of the programs, takes less than a millisecond. No shared
- * state. */
+ * Steps: a search in doubles takes microseconds; an exact direction takes tens of microseconds for
+ * frames with few vertices. A step of a direction of large hulls, or of the programs, takes less
+ * than a millisecond. No shared state. */
 #ifndef FMB_TURN_DECISION_H
 #define FMB_TURN_DECISION_H
 
@@ -83,12 +84,12 @@ struct turn_decision {
     } known[TURN_KNOWN]; /* verdicts at examined times */
     unsigned next_known;
     struct turn_interval apart[TURN_KNOWN]; /* intervals over which the frames are apart */
-    unsigned apart_count;                   /* of all there were; the oldest are replaced */
+    unsigned apart_count;                   /* all ever added; the last TURN_KNOWN are kept */
     struct turn_exact exact;
     bool has_exact;
-    double nearest_at;         /* the time of the nearest point that it was given, or -1 */
-    unsigned nearest_count;    /* of directions towards it */
-    double corners_at;         /* the time for which they were wanted, or -1 */
+    double nearest_at;      /* the time of the nearest point in `exact`, or -1 */
+    unsigned nearest_count; /* directions towards this point */
+    double corners_at; /* the time of the directions towards the nearest point; -1: by vertices */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
     signed char sign[TURN_CORNERS];

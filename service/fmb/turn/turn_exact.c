@@ -7,14 +7,15 @@
  * If n . (b - a) >= 0 at some time, n is not 0 and n . x is not constant on one of the frames, then
  * the relative interior of that frame has no point with the greatest (least) n . x, and the two
  * relative interiors do not meet. n = N m is never 0. A product of edges is known not to be 0 if
- * all coefficients of one of its coordinates are of one sign. n . x is not constant on a frame that
- * is solid, nor on the frame in which n is fixed if m . x differs between two of its vertices.
+ * all coefficients of one of its coordinates are of one sign. n . x is not constant on a solid
+ * frame, nor on the frame in which n is fixed if m . x differs between two of its vertices.
  *
- * Radii, R their sum. If n = N m, the frames are apart where n . (b - a) > R |n|, and |n| is |m|
- * |q_A|^2 |q_B|^2 with the positive factors of the polynomial: the coefficients of R |m| |q_A|^2
- * |q_B|^2 are subtracted. If R |m| is not a whole number of units, an upper bound takes its place
- * that is less than 2^-ROOT_BITS of a unit too large. (Along such a direction the frames never rest
- * on each other, since n . (b - a) has rational coefficients.) Frames with a radius are solid. */
+ * Radii: let R be their sum. If n = N m, the frames are apart where n . (b - a) > R |n|. With the
+ * positive factors of the polynomial, |n| is |m| |q_A|^2 |q_B|^2, so the coefficients of
+ * R |m| |q_A|^2 |q_B|^2 are subtracted. If R |m| is not a whole number of units, it is replaced by
+ * an upper bound that is too large by less than 2^-ROOT_BITS of a unit. (Along such a direction the
+ * frames never rest on each other, since n . (b - a) has rational coefficients.) Frames with a
+ * radius are solid. */
 #include "turn_exact.h"
 
 #include "integer.h"
@@ -87,12 +88,12 @@ struct work {
 /* A direction over an interval, in progress. */
 struct turn_trial {
     struct work work;
-    int of;               /* as of struct turn_corners */
+    int of;               /* as in struct turn_corners */
     mp_bitcnt_t bits;     /* lengths are scaled by 2^bits */
     bool splits;          /* n . x is not constant on the frame of n, or a product is never 0 */
-    unsigned scan, scans; /* the present scan, and all; no scans: the direction is 0 */
-    int f, way;           /* of the present scan: the frame; 1 for the least, -1 for the greatest */
-    unsigned next, count; /* listed vertices: the next, and all */
+    unsigned scan, scans; /* the current scan; the number of scans, 0 if the direction is 0 */
+    int f, way;           /* of the current scan: the frame; 1 to minimize, -1 to maximize */
+    unsigned next, count; /* of the listed vertices: the next index; their number */
     bool constant;        /* x . v is the same for all vertices so far */
     uint16_t listed[FMB_HULL_VERTICES_MAX];
 };
@@ -241,7 +242,7 @@ void turn_exact_direction(const struct turn_exact *exact, const struct turn_corn
     integer_each(&work, sizeof work, mpz_clear);
 }
 
-/* Sets the coefficients of a direction fixed in frame f, without those of the vertices. */
+/* Sets the coefficients for a direction fixed in frame f, without the terms of the vertices. */
 static void begin_fixed(struct turn_trial *trial, int f)
 {
     struct work *work = &trial->work;
@@ -321,13 +322,13 @@ void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners
 
 /* ---- Supports ----
  *
- * The coefficients of the vertices are supports, each a scan of one frame. For a direction fixed in
- * frame f, scan 0 is that of m over f, for all coefficients, and scan 1 + k is that of c_k over the
- * other frame. For a product, scan k is that of x_k x f over B, and scan 6 + k that of y_k x e over
- * A (turn_path.h). */
+ * The terms of the vertices are support values. Each is computed by a scan of one frame. For a
+ * direction fixed in frame f, scan 0 computes the support of m over f, for all coefficients; scan
+ * 1 + k computes the support of c_k over the other frame. For a product, scan k computes the
+ * support of x_k x f over B, and scan 6 + k the support of y_k x e over A (turn_path.h). */
 
-/* Returns the frame of the present scan, and sets x, whose least (*way > 0) or greatest x . v is
- * needed. */
+/* Returns the frame of the current scan. Sets x; the scan seeks the least x . v if *way > 0,
+ * otherwise the greatest. */
 static int begin_scan(struct turn_trial *trial, int *way)
 {
     struct work *work = &trial->work;
@@ -429,7 +430,7 @@ static void end_trial(struct turn_exact *exact)
     exact->trial = NULL;
 }
 
-/* The time of a value x . v in nanoseconds: 300, and half of one for each product of limbs. */
+/* The time to compute x . v, in nanoseconds: 300, plus 0.5 for each product of two limbs. */
 static double cost_of(vector x, vector v)
 {
     double products = 0;
@@ -438,7 +439,7 @@ static double cost_of(vector x, vector v)
     return 300 + 0.5 * products;
 }
 
-/* The most that the values of a step cost. */
+/* The limit on the cost of the values of a step, in nanoseconds. */
 static const double step_cost = 3e5;
 
 bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome)

@@ -1,5 +1,5 @@
 /* Directions that separate a pair that turns over an interval, in integers: the polynomials of
- * turn_path.h, for directions given by vertices, or towards the nearest point. No shared state. */
+ * turn_path.h, for directions given by vertices or towards the nearest point. No shared state. */
 #ifndef FMB_TURN_EXACT_H
 #define FMB_TURN_EXACT_H
 
@@ -15,8 +15,8 @@ enum turn_outcome {
     TURN_REST   /* they may touch, and do not overlap */
 };
 
-/* In place of the first vertex of a direction that is fixed in a frame: the direction towards the
- * nearest point, or the same rounded to doubles. */
+/* Values of turn_corners.vertex[0] for a direction that is fixed in a frame and points towards the
+ * nearest point: the exact direction, or the direction rounded to doubles. */
 enum { TURN_NEAREST = UINT16_MAX, TURN_ROUNDED = UINT16_MAX - 1 };
 
 struct turn_trial;
@@ -33,8 +33,8 @@ struct turn_exact {
 void turn_exact_begin(const struct turn_path *path, struct turn_exact *out);
 void turn_exact_end(struct turn_exact *exact);
 
-/* Sets the direction towards the nearest point, in the coordinates of both frames, from the proof
- * of a complete decision by it (programs_begin_nearest()). */
+/* Sets the direction towards the nearest point, in the coordinates of each frame. proof: the proof
+ * of a complete decision by the nearest point (programs_begin_nearest()). */
 struct programs_proof;
 void turn_exact_take(struct turn_exact *exact, const struct programs_proof *proof);
 
@@ -43,8 +43,9 @@ void turn_exact_take(struct turn_exact *exact, const struct programs_proof *proo
 void turn_exact_direction(const struct turn_exact *exact, const struct turn_corners *corners,
                           int sign, mpz_t m[2][3]);
 
-/* Begins to determine what a direction, or its opposite if sign is -1, proves of the closed
- * interval [lo, hi], both multiples of 2^-52. It allocates through GMP until this is complete. */
+/* Begins to determine what a direction, or its opposite if sign is -1, proves about the closed
+ * interval [lo, hi]. Memory is allocated through GMP until this is complete. In: lo and hi are
+ * multiples of 2^-52. */
 void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners, int sign,
                     double lo, double hi);
 

@@ -5,8 +5,8 @@
 
 enum {
     GAP_LOOKS_MAX = 2000,
-    GAP_LOOKS_STEP = 16,     /* the most looks of a step */
-    GAP_VERTICES_STEP = 4096 /* hulls of more vertices have fewer: a depth takes many scans */
+    GAP_LOOKS_STEP = 16,     /* the most pieces that a step examines */
+    GAP_VERTICES_STEP = 4096 /* fewer pieces for large hulls: a depth takes many scans */
 };
 
 /* Pieces shorter than this use a second direction. */
@@ -51,7 +51,7 @@ static void take(struct turn_gap *gap, const double n[FMB_DIM_MAX])
     gap->at.time = gap->path->pair.at * gap->path->pair.frames->duration;
     if (gap->at.has_witness)
         gap->at.bounds[1] = (gap->at.bounds[1] + gap->travel) * (1 + 0x1p-52);
-    /* The depth of frames that are slightly apart is 0, and the direction proves a distance. */
+    /* If the frames are slightly apart, the depth is 0 but the direction proves a distance. */
     gap->at.bounds[0] = fmin(gap->at.bounds[0], gap->at.bounds[1]);
     /* Also tries the vertices that become supporting within the piece, and the last good direction.
      */
@@ -83,9 +83,9 @@ static double proved_by(const struct support_pair *pair, const double n[FMB_DIM_
     return -support_farthest(pair, outward, &column) - (1.25 * pair->error + pair->radius[1]);
 }
 
-/* Bounds the gap by a search that proves no verdict. The frames are at most as far apart as its
- * nearest point. Its direction, computed from a small difference of large numbers, may be poor; the
- * last good direction replaces it if that proves more. */
+/* Bounds the gap by a search that proves no verdict. The distance of its nearest point is an upper
+ * bound. Its direction, computed from a small difference of large numbers, may be poor; the last
+ * good direction replaces it if it proves a greater lower bound. */
 static void set_unsure(struct turn_gap *gap, struct support_nearest *nearest)
 {
     const struct support_pair *pair = &gap->path->pair;
@@ -117,9 +117,9 @@ static void take_known(struct turn_gap *gap)
     take(gap, n);
 }
 
-/* Examines the middle of a piece. A search is also unsure of frames that overlap deeply, if its
- * simplex has the origin on its boundary, as for frames with a common centre. The method of the
- * depth does not depend on the simplex. */
+/* Examines the middle of a piece. Even if the frames overlap deeply, a search proves no verdict
+ * when the origin is on the boundary of its simplex, as for frames with a common centre. The
+ * computation of the depth does not depend on the simplex. */
 static void look(struct turn_gap *gap, struct turn_piece piece)
 {
     struct support_pair *pair = &gap->path->pair;
@@ -153,10 +153,10 @@ static void look(struct turn_gap *gap, struct turn_piece piece)
 
 /* ---- All pieces ---- */
 
-/* Returns an upper bound of how far the points of both frames move in the error of a time in
- * seconds. A quaternion turns a frame by at most 2 |q0| |q1| / |q(s)|^2 radians for each unit of s.
- * The lengths of q0 and q1 differ by a factor of at most 4, and |q(s)|^2 is at least half the
- * square of the lesser: at most 16. */
+/* Returns an upper bound of the distance that the points of both frames move within the error of a
+ * time in seconds. A quaternion turns a frame by at most 2 |q0| |q1| / |q(s)|^2 radians for each
+ * unit of s. The lengths of q0 and q1 differ by a factor of at most 4, and |q(s)|^2 is at least
+ * half the square of the lesser: at most 16. */
 static double travel_of(const struct turn_path *path)
 {
     const double duration = path->pair.frames->duration;
@@ -184,7 +184,7 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->travel = travel_of(path);
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;
-    /* No point of D is farther from the origin than the reach and the radii. */
+    /* The reach plus the radii bounds the distance of all points of D from the origin. */
     const double least = separated ? 0 : -(path->pair.reach + path->pair.radius[1]) * (1 + 0x1p-40);
     /* The ends come first: the gap is often least there. */
     push(out, 0, 1, least, !path->pair.usable);
@@ -233,7 +233,7 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, struct fmb_gap *out)
             return GAP_KNOWN;
         }
         gap->piece[first] = gap->piece[--gap->count];
-        /* The last good direction often bounds a piece tightly, and costs less than a depth. */
+        /* The last good direction often gives a tight bound, and costs less than a depth. */
         const double bound =
             !piece.looked && gap->has_good && !gap->separated && piece.lo < piece.hi
                 ? turn_distance(gap->path, &gap->good, piece.lo, piece.hi)

@@ -24,7 +24,7 @@ struct turn_gap {
     struct turn_piece piece[TURN_PIECES];
     unsigned count, looks;
     double tight;    /* the greatest width */
-    double travel;   /* of both frames in the error of a time */
+    double travel;   /* bounds the movement of both frames within the error of a time */
     double farthest; /* a gap that is surely greater need not be enclosed */
     struct fmb_gap best;
     struct turn_direction good; /* the last that bounded the gap over a piece tightly */
@@ -34,13 +34,13 @@ struct turn_gap {
     struct fmb_gap at;             /* its gap */
 };
 
-/* Begins the search. path must outlive it. separated: the verdict of the pair, which does not
- * touch. known: if it overlaps, a time of overlap; otherwise any time. */
+/* Begins the search for a pair that is separated or overlaps. path must outlive the search.
+ * separated: the pair is separated. known: a time of overlap; any time for a separated pair. */
 void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double known,
                     double farthest, struct turn_gap *out);
 
 /* Performs a step. Returns GAP_UNSURE until the search is complete, then GAP_KNOWN, with *out set,
- * or GAP_FAR. The enclosure is wider than the limit only if the work is limited (fmb.h). */
+ * or GAP_FAR. The enclosure is wider than the limit only in the cases that fmb.h names. */
 enum gap_outcome turn_gap_step(struct turn_gap *gap, struct fmb_gap *out);
 
 /* Abandons the search, complete or not. */

@@ -174,8 +174,8 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
 
 /* For a vertex of one frame and a face of the other, the direction is fixed in the frame of the
  * face, which has more supporting vertices. For two edges that are not parallel it is their
- * product. For two parallel edges either frame may do; for frames with a radius too, since a frame
- * may turn about a vertex. */
+ * product. For two parallel edges, the direction may be fixed in either frame; likewise for frames
+ * with a radius, since a frame may turn about a vertex. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
                          double slack, struct turn_direction out[3])
 {
@@ -443,8 +443,9 @@ static double value_at(const double c[6], double x)
     return value;
 }
 
-/* Returns the part of the way from x to `end` on which a polynomial that is positive at x is
- * positive, or, if that is all of it, on which it falls to its least value: a share of the way. */
+/* Follows a polynomial that is positive at x from x to `end`, by samples. *negative := whether it
+ * becomes negative. Returns the fraction of the distance up to which it is positive or, if it is
+ * positive all the way, at which it is least. */
 static double positive_part(const double c[6], double x, double end, bool *negative)
 {
     enum { SAMPLES = 16, HALVINGS = 40 };
