@@ -26,7 +26,7 @@
 #   PEERS=none                     leaves out other libraries from the benchmarks
 #   WERROR=1                       warnings are errors
 #   V=1                            shows commands, not one line a file
-#   BUILD=FOLDER                   builds programs there, not in build/, also from a tree that is read-only
+#   BUILD=FOLDER                   builds programs in FOLDER, not in build/; the tree may be read-only
 #   HELP_FROM=build                whose programs print the manual; for those of another machine
 #   PYTHONDIR                      where fmb.py goes
 #   CC, CPPFLAGS, CFLAGS, LDFLAGS, PREFIX, LIBDIR, DESTDIR   as usual; flags that change numbers are left out
