@@ -87,9 +87,9 @@ struct turn_decision {
     unsigned apart_count;                   /* all ever added; the last TURN_KNOWN are kept */
     struct turn_exact exact;
     bool has_exact;
-    double nearest_at;      /* the time of the nearest point in `exact`, or -1 */
-    unsigned nearest_count; /* directions towards this point */
-    double corners_at; /* the time of the directions towards the nearest point; -1: by vertices */
+    double nearest_at;         /* the time of the nearest point in `exact`, or -1 */
+    unsigned nearest_count;    /* directions towards this point */
+    double corners_at;         /* the time of the listed directions; -1: by vertices */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
     signed char sign[TURN_CORNERS];
