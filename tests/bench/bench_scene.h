@@ -38,7 +38,7 @@ struct scene scene_draw_posed(const struct cell *cell, size_t bodies, uint64_t s
 struct scene scene_of_corners(const struct scene *posed);
 /* Those of the questions: all a, then all b; one frame each. */
 struct scene scene_of_questions(const struct question *questions, size_t count);
-/* Memory for so many bodies, unset. */
+/* Memory for `count` bodies, not set. */
 struct scene scene_empty(size_t count);
 /* Its bodies of one frame as other libraries are given them: [count], to be freed. No faces. */
 struct peer_solid *scene_solids(const struct scene *scene);
@@ -48,7 +48,8 @@ void scene_free(struct scene *scene);
 struct pairs pairs_draw(const struct scene *scene, size_t count, uint64_t seed);
 /* The same, such as are in contact, or such as are not; sorted out by the certified method. */
 struct pairs pairs_draw_of(const struct scene *scene, bool in_contact, size_t count, uint64_t seed);
-/* Pair i is body i and body count + i. As many pairs of the same bodies follow for warming up. */
+/* Pair i is body i and body count + i. As many other pairs of these bodies follow, for warming up.
+ */
 struct pairs pairs_side_by_side(size_t count);
 struct pairs pairs_copy(const struct pairs *pairs);
 void pairs_free(struct pairs *pairs);

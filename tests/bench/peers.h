@@ -10,8 +10,8 @@
 extern "C" {
 #endif
 
-/* A motion during [0, 1], [begin, end]: positions are interpolated linearly, quaternions (w, x, y,
- * z), at an acute angle, linearly too and normalised. */
+/* A motion during [0, 1], as [begin, end]. Positions and quaternions (w, x, y, z) are interpolated
+ * linearly; the quaternions are at an acute angle, and the result is normalised. */
 struct peer_motion {
     double centre[3]; /* of the solid, in coordinates of the body that has these poses */
     double position[2][3], orientation[2][4];
@@ -32,7 +32,7 @@ struct peer_solid {
     /* Of a box: components are size times unit axis. A capsule has this size and axis, number 2. */
     double centre[3], size[3], axis[3][3];
     double velocity[3]; /* during [0, 1] */
-    /* NULL, or the motion of a box or a hull; it has no coordinates in the world. */
+    /* NULL, or the motion of a box or a hull, which then has no world coordinates. */
     const struct peer_motion *motion;
 };
 
@@ -42,13 +42,13 @@ enum { PEERS_MAX = 16 };
 
 struct peers;
 
-/* The solids must outlive the peers. Unless all of them are in 3D, no library is opened. If one is
- * a hull or has a radius or a motion, only libraries that take such solids may be run. */
+/* The solids must outlive the peers. Unless all of them are in 3D, no library is opened. If a
+ * solid is a hull, or has a radius or a motion, only libraries that take such solids may be run. */
 struct peers *peers_open(const struct peer_solid *solid, size_t count);
 void peers_close(struct peers *peers);
 
-/* What a peer answers: a sum. PEER_VERDICT: it is raced for verdicts; PEER_TURNING_VERDICT: of
- * solids that have a motion. */
+/* What a peer answers: a sum. PEER_VERDICT: it is raced for verdicts; PEER_TURNING_VERDICT: it is
+ * raced for verdicts of solids with a motion. */
 enum { PEER_VERDICT = 1, PEER_DISTANCE = 2, PEER_DEPTH = 4, PEER_TURNING_VERDICT = 8 };
 
 /* Which pairs it takes besides solids at rest in 3D: a sum. */

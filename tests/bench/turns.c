@@ -1,7 +1,7 @@
-/* What windows cost in which bodies turn: verdicts and contacts of boxes and hulls, far from
- * contact, near it and in it, beside FCL's solvers for motions, and how often each is wrong. The
- * truth is the verdict of the method certified, which the campaign of turning bodies compares with
- * an oracle that shares no code with it. */
+/* Cost of windows in which bodies turn: verdicts and contacts of boxes and hulls far from contact,
+ * near contact and in contact, beside the continuous solvers of FCL, and how often each method is
+ * wrong. Truth is the verdict of the method certified, which build/turning compares with an oracle
+ * that shares no code with it. */
 #include "bench.h"
 
 #include <math.h>
@@ -15,17 +15,17 @@
 
 /* ---- Windows ---- */
 
-/* How two bodies move. B stands on A in all but the first:
+/* How two bodies move. In all motions but ANYHOW, B stands on A:
  *
  *   ANYHOW  from and to random poses; the turn is at most `most` radians
  *   SLIDES  yaws and slides on A
- *   TUMBLES turns upwards about the edge on which it stands, which stays where it is
- *   CLOSES  the same downwards, until its face is level: a door
+ *   TUMBLES turns upwards about the edge on which it stands; the edge does not move
+ *   CLOSES  turns downwards about this edge until its face is level, as a door
  */
 enum motion { ANYHOW, SLIDES, TUMBLES, CLOSES };
 
-/* gap: 0 of ANYHOW: as it comes; else the gap over the window, negative for a depth. Of the other
- * motions the height of B above A. */
+/* gap: for ANYHOW, the gap over the window, negative for a depth, or 0 for any gap. For the other
+ * motions, the height of B above A. */
 static const struct kind {
     const char *name;
     enum motion motion;
@@ -62,7 +62,7 @@ static const struct rings of_hulls = {7, 14}; /* 100 vertices */
 
 enum { VERTICES = 100, SHIFTS = 12 };
 
-/* A body that is being made. */
+/* A body under construction. */
 struct draft {
     bool turns;
     double half[3];
@@ -82,7 +82,7 @@ static void draw_unit(struct draw *draw, int count, double *out)
         out[i] /= sqrt(square);
 }
 
-/* out := q after a turn about a unit vector. */
+/* out := q followed by a rotation about a unit vector. */
 static void turn_by(const double q[4], double angle, const double axis[3], double out[4])
 {
     double by[3] = {0};
@@ -141,7 +141,7 @@ static void draw_standing(struct draw *draw, const struct kind *kind, struct dra
 /* ---- Bodies ---- */
 
 struct turns {
-    size_t count; /* pair i is body i and body count + i; after these, as many for warming up */
+    size_t count; /* pair i is body i and body count + i; as many follow, for warming up */
     struct scene scene;
     struct pairs pairs;
     struct peer_solid *solid;   /* [2 count] */
@@ -200,7 +200,7 @@ static void make_body(struct turns *turns, const struct draft *draft, bool hull,
 }
 
 /* Shifts B along the direction of the gap until both bounds are near the target. Returns false if
- * they do not get there, or if there is no gap. */
+ * they do not become so, or if the pair has no gap. */
 static bool shift(const struct kind *kind, struct draft *draft, struct fmb_placement *a,
                   struct fmb_placement *b)
 {
@@ -288,8 +288,8 @@ static int list_raced(enum contender raced[CONTENDERS_AND_PEERS])
     return count;
 }
 
-/* The share of decided pairs about which a contender is wrong; touching is contact. No answer is
- * wrong too. */
+/* The share of decided pairs for which a contender is wrong. Touching is contact; a missing answer
+ * is wrong. */
 static double wrong_of(enum contender contender, const struct work *work,
                        const unsigned char *certified)
 {
@@ -311,7 +311,7 @@ static double share_of(const unsigned char *verdict, size_t count, enum fmb_verd
     return (double) found / (double) count;
 }
 
-/* All methods decide all pairs, however long that takes. */
+/* Every method decides all pairs, without a time limit. */
 static void row(struct bench *bench, const struct kind *kind, const enum contender *raced,
                 int count)
 {
@@ -360,11 +360,11 @@ void turns_run(struct bench *bench)
         return;
     const int count = list_raced(raced);
     printf(
-        "\nWindows in which bodies turn, boxes or hulls of 100 vertices; nanoseconds a pair, the\n"
-        "same distinct pairs for all, and after each time the percentage of verdicts that are\n"
-        "wrong; touching is contact. query: with the contact. Quaternions are interpolated as in\n"
-        "fmb.h by all. meet: the percentage of pairs that meet; open: that have no certified\n"
-        "answer.\n");
+        "\nBoxes, or hulls of 100 vertices, that turn within the window. Nanoseconds a pair, the\n"
+        "same distinct pairs for all methods; after each time the percentage of wrong verdicts;\n"
+        "touching is contact. query includes the contact. All methods interpolate quaternions as\n"
+        "fmb.h does. meet: the percentage of pairs that meet; open: the percentage of pairs\n"
+        "without a certified answer.\n");
     peers_help();
     printf("%-34s %5s %5s", "", "meet", "open");
     for (int i = 0; i < count; i++)

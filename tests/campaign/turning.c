@@ -62,7 +62,7 @@ struct count {
     long pairs, truth[FMB_OVERLAPPING + 1], open, undecided, wrong;
     long lacking;                  /* decided, without gap or box */
     long wide;                     /* decided, with a gap wider than the usual bound */
-    double contact_most, gap_most; /* largest error of an end, and width, over that bound */
+    double contact_most, gap_most; /* largest error of an end, and width, each over its bound */
     double seconds[2];             /* of the engine, of the oracle */
     struct question question;      /* the first with a wrong answer */
     char why[WHY];
@@ -262,8 +262,8 @@ static const char *contact_fault(const struct pair *pair, struct turning_truth *
     return fault;
 }
 
-/* Returns the fault of a gap, or NULL. Raises the largest width, over the usual bound, or counts a
- * wide gap. */
+/* Returns the fault of a gap, or NULL. Counts a gap that is wider than the usual bound as wide;
+ * raises gap_most to the width of any other gap, divided by this bound. */
 static const char *gap_fault(const struct pair *pair, enum fmb_verdict verdict,
                              const struct fmb_gap *gap, struct count *count)
 {
@@ -653,8 +653,8 @@ int main(int argc, char **argv)
         add(&campaign, options.families ? options.family[i] : family_turning_at(i));
     workers_do("turning", options.workers, campaign.counts, run, &campaign);
     printf("seed %" PRIu64
-           "; wide: gaps wider than 1e-12; contact and gap: largest error, and width of the "
-           "others, over 1e-12; times: us of a "
+           "; wide: gaps wider than 1e-12; contact: largest error, over 1e-12; gap: largest "
+           "width of the other gaps, over 1e-12; times: us of a "
            "verdict with contact, ms of the oracle\n"
            "%-20s    %6s %6s %6s %6s %5s | %5s %6s %6s %6s %8s %8s | %8s %8s\n",
            options.seed, "", "pairs", "apart", "touch", "over", "open", "wrong", "undec.", "lacks",

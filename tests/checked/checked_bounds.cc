@@ -490,8 +490,8 @@ static const char not_checked[] =
     "Not checked here: errors of origins and vertices (prepared.c, frame.c), sums rounded\n"
     "outward (aabb.h, box_ends.h), boxes of level cuboids (BOXES.md, 7), points of contact\n"
     "(BOXES.md, 12; support_gap.c), depths of hulls (support_depth.c), positions within a window\n"
-    "(turn_decision.c), and what is done in integers. In the filter and in gaps frames count as\n"
-    "given, without errors; so do the vertices and directions of pairs that turn.\n";
+    "(turn_decision.c), and computations in integers. The filter and gaps take frames as given,\n"
+    "without errors, and pairs that turn take vertices and directions as given.\n";
 
 /* A fraction of a constant. */
 static void print_share(FILE *out, long double share)

@@ -18,8 +18,8 @@ void check_begin(void);
 /* Computes a pair of valid frames of one dimension by each job, in both orders. */
 void check_pair(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration);
 
-/* Computes a pair of valid frames of one dimension, at least one of which has an end, as
- * service/fmb/turn does. */
+/* Computes a pair of valid frames of one dimension as service/fmb/turn does. At least one of the
+ * placements has an end. */
 void check_turning_pair(const struct fmb_prepared *a, const struct fmb_prepared *b,
                         double duration);
 

@@ -205,8 +205,8 @@ static void check_mesh(const struct support_pair *pair, const struct support_ver
 
 static struct checked_frame frame[2];
 
-/* What bounds the error of an orientation within the window, relative to its length (turn_path.h).
- */
+/* Bound of the error of an orientation within the window, relative to the length of the quaternion
+ * (turn_path.h). */
 #define ORIENTATION_ERROR (2.9 * 0x1p-53)
 
 void check_hulls(const struct checked_vertices from[2], plain_double duration)
@@ -246,7 +246,8 @@ void check_hulls(const struct checked_vertices from[2], plain_double duration)
     arena_clear();
 }
 
-/* The box over an interval of the vertices, whose own box counts as given. */
+/* The box of the moving vertices over an interval. The box of the vertices in body coordinates
+ * counts as given. */
 static void check_motion_box(const struct turn_path *path, int f, number lo, number hi)
 {
     const struct support_vertices *vertices = &path->pair.view[f].vertices;
@@ -268,7 +269,7 @@ static void check_motion_box(const struct turn_path *path, int f, number lo, num
     motion_box_between(q, position, vertices->dim, box, path->pair.view[f].reach, low, high);
 }
 
-/* The polynomials of a direction over an interval. */
+/* The polynomials of a direction over an interval. The direction counts as given. */
 static void check_direction(const struct turn_path *path, const struct turn_corners *corners,
                             number lo, number hi)
 {

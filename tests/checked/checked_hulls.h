@@ -20,8 +20,8 @@ struct checked_vertices {
 
 void check_hulls(const struct checked_vertices pair[2], double duration);
 
-/* The same of a pair in which a placement has an end: poses, boxes and polynomials over intervals,
- * with the bounds of service/fmb/turn and of motion.h. */
+/* Checks a pair in which a placement has an end: poses, boxes and polynomials over intervals, with
+ * the bounds of service/fmb/turn and of motion.h. */
 void check_turns(const struct checked_vertices pair[2], double duration);
 
 #ifdef __cplusplus

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* The families of all tables, turning ones last; NULL past the last. */
+/* The families of all campaigns, with turning families last; NULL past the last. */
 const struct family *family_checked_at(size_t index);
 
 /* Checks `questions` of each cell of a family, every pair of their frames. */

@@ -182,7 +182,7 @@ suffices() {
     suffices deps-aarch64
 }
 
-@test "with BUILD, programs are built there, and nothing is written into the tree" {
+@test "with BUILD, programs are built in that folder, and nothing is written into the tree" {
     touch "$BATS_TEST_TMPDIR/before"
     make_there deps BUILD="$BATS_TEST_TMPDIR/elsewhere" programs manual
     [ "$status" = 0 ]

@@ -87,7 +87,7 @@ capped_at() {
             | contains([[0,0,0]]) and contains([[2,2,0]])'
 }
 
-@test "the log of pairs that turn has all verdicts, and all that can be wanted of each" {
+@test "the log of pairs that turn has all verdicts, each with every kind of answer that it can have" {
     "$DESCRIBE" tests/logs/turns.log > "$BATS_TEST_TMPDIR/events"
     pairs='.[] | select(.channel == "FMB_PAIR_RESULT" and .status == 0)'
     # Methods in doubles cannot decide them. Pairs that touch have no certificate.

@@ -13,7 +13,7 @@ setup_file() {
     tar --exclude=./build --exclude=./.git -c . | tar -x -C "$root/fmb"
     cp build/deb/*.deb "$root/fmb"
     inside apt-get update -q
-    # No systemd runs there: what the packages ask of it is written down. An enabled unit runs.
+    # No systemd runs in the chroot: a stub of systemctl records its arguments. It reports an enabled unit as running.
     export enabled=/etc/systemd/system/multi-user.target.wants/fmbd.service
     mkdir -p "$root/run/systemd/system"
     printf '#!/bin/sh\necho "$*" >> /asked\n[ -L %s ] && echo enabled\n' $enabled > "$root/usr/bin/systemctl"
@@ -43,7 +43,7 @@ get() {
     inside fmb query --local --box /fmb/$scene | cmp - <("$FMB_BUILD/fmb" query --local --box $scene)
     "$FMB_BUILD/netns" chroot "$root" sh -c "fmbd 2> log & until grep -q ready log; do sleep 0.1; done
         fmb query --box /fmb/$scene; kill \$!; wait" | cmp - <("$FMB_BUILD/fmb" query --local --box $scene)
-    # A scene with a body that turns, and a path of a robot, of the examples in the package.
+    # Two examples of the package: a scene with a body that turns, and a path of a robot.
     examples=usr/share/doc/fmb/examples
     inside fmb query --local --box --point /$examples/turn.json | cmp - <("$FMB_BUILD/fmb" query --local --box --point clients/demo/turn.json)
     head -n 4 "$root/$examples/robot/path.csv" > "$root/start.csv"
@@ -88,7 +88,7 @@ get() {
 }
 
 @test "an earlier version is upgraded, and an enabled unit stays enabled and restarts" {
-    # The same packages with a lower version, and a file that later ones lack.
+    # The same packages with a lower version, and with a file that the later version lacks.
     version=$(dpkg-deb -f build/deb/fmb_*.deb Version)
     mkdir "$root/fmb/old"
     for file in build/deb/*.deb; do
@@ -128,12 +128,12 @@ get() {
     mkdir "$BATS_TEST_TMPDIR/another folder"
     tar --exclude=./build --exclude=./.git -c . | tar -x -C "$BATS_TEST_TMPDIR/another folder"
     find "$BATS_TEST_TMPDIR/another folder" -exec touch -d 2001-01-01 {} +
-    # In a tarball, it has the time of the commit.
+    # In a tarball, the Makefile has the time of the commit.
     touch -d "@$(dpkg-parsechangelog -l build/deb/fmb-*/debian/changelog -S Timestamp)" "$BATS_TEST_TMPDIR/another folder/Makefile"
     (
         cd "$BATS_TEST_TMPDIR/another folder"
         umask 077
-        # Files keep their times: make compares them.
+        # The times of files are not faked: make compares them.
         TZ=Asia/Kathmandu LC_ALL=C CCACHE_DISABLE=1 NO_FAKE_STAT=1 faketime -f +400d \
             env -u MAKEFLAGS -u MAKELEVEL make deb > log 2>&1 || { tail -n 40 log; return 1; }
     )

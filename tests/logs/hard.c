@@ -55,8 +55,7 @@ static void query_again(struct hard *hard, const struct pair_query *query)
     log_client_pair(&hard->log_client, &swapped, &result);
 }
 
-/* Half of the pairs that turn, which methods in doubles refuse, are for the service's own choice.
- */
+/* Methods in doubles refuse pairs that turn: for half of these the service chooses the method. */
 static void query_pair(struct hard *hard, const struct question *question, bool turns)
 {
     struct draw *draw = &hard->draw;
@@ -128,8 +127,9 @@ static void query_family(struct hard *hard, const struct family *family, int dim
     query_scene(hard);
 }
 
-/* Pairs one by one, and those of a second of both dimensions once more in scenes. Sines, cosines
- * and powers differ between machines: families that draw them are left out. */
+/* Queries single pairs; then the pairs with a window of one second again, in a scene for each
+ * dimension. Sines, cosines and powers differ between machines: families that draw them are left
+ * out. */
 static void query_turning_family(struct hard *hard, const struct family *family)
 {
     static const char *const whole[] = {"turn-table", "turn-lift",  "turn-land",  "turn-tumble",

@@ -5,8 +5,8 @@
 #include "query.h"
 #include "question.h"
 
-/* The solid as a body of one frame, whole. The geometry is valid until PART_BODIES_MAX more are
- * placed. In: a hull has at most 16 vertices. */
+/* Places the solid as a whole body of one frame. The geometry is valid until PART_BODIES_MAX more
+ * bodies are placed. In: a hull has at most 16 vertices. */
 enum { PART_BODIES_MAX = 2048 };
 void part_place(const struct solid *solid, int64_t body_id, struct query_placement *out);
 

@@ -180,8 +180,8 @@ static void contacts_of_numbers_that_round_are_taken_as_they_are(void **state)
         }
 }
 
-/* Of pairs that turn: the work of a step, of a certificate's step, and of a pair, in products of
- * limbs. Numbers and quaternions of all exponents take most. */
+/* Bounds the work for pairs that turn, in products of limbs: for each step, for each step of a
+ * certificate, and for a pair. Numbers and quaternions of all exponents take the most work. */
 static void work_of_turning_pairs_is_bounded(void **state)
 {
     static const double most_of_step = 2e5, most_of_pair = 3.5e8;

@@ -116,21 +116,21 @@ static const struct kind kinds[] = {
 };
 static const int turnarounds_us[] = {5, 10, 15, 20, 30, 60, 100, 145, 200, 400, 700, 1000};
 
-/* Costs of the queries of a client, in turn. */
+/* Costs of the queries of a client: [0] is cost_ns and [1] is odd_cost_ns of struct kind. */
 static const int64_t costs_ns[][2] = {{8 * US, 0}, {500 * US, 0}, {8 * US, 500 * US}};
 
 enum { COSTS = COUNT(costs_ns), KINDS = COUNT(kinds), TURNAROUNDS = COUNT(turnarounds_us) };
 
-/* All cases are simulated; with FMB_FAST, one in so many. */
+/* Returns the step from case to case: 1, so that all are simulated, or `fast` with FMB_FAST. */
 static int step(int fast)
 {
     return getenv("FMB_FAST") ? fast : 1;
 }
 
-/* The share of a client beside each kind of others. */
+/* Asserts the least share of a client beside `ids` clients of each kind. */
 static void expect_share(int ids, double least)
 {
-    static int64_t alone[COSTS * KINDS * TURNAROUNDS]; /* 0: not known yet */
+    static int64_t alone[COSTS * KINDS * TURNAROUNDS]; /* 0: not simulated yet */
     double worst = 1;
     for (int n = 0; n < COSTS * KINDS * TURNAROUNDS; n += step(23)) {
         const struct kind *kind = &kinds[n % KINDS];

@@ -8,7 +8,7 @@
  *     products   of limbs in integers: 0.5 ns each (exact_work.h);
  *     placed     vertices in integers: 1,000 ns each, beside their products, measured with numbers
  *                of the whole range;
- *     read       vertices that are turned into integers but not placed: 300 ns each;
+ *     read       vertices that are converted to integers but not placed: 300 ns each;
  *     written    limbs of fractions that a certificate states: 600 ns each, to reduce the fraction
  *                and to print it, measured with 8 to 64 limbs.
  *
@@ -156,8 +156,8 @@ static void put(struct draw *draw, enum place place, double unit, struct large l
     }
 }
 
-/* Gives both hulls an end in place of a velocity. On its face, the second turns about the axis of
- * both, and slides. */
+/* Gives both hulls an end in place of a velocity. RESTING: the second hull turns about the axis of
+ * both and slides on the face of the first hull. */
 static void give_ends(struct draw *draw, enum place place, double unit, struct large large[2])
 {
     for (int f = 0; f < 2; f++) {

@@ -440,7 +440,7 @@ static void boxes_of_another_dimension_differ(void **state)
 
 /* ---- Scenes: a model ---- */
 
-/* Where they are compared: they are large. */
+/* The model works on the structs that are compared, because copies would be large. */
 static struct logged_query scene_logged = {.kind = LOG_SCENE_QUERY};
 static struct logged_result results_logged[2] = {{.kind = LOG_SCENE_QUERY},
                                                  {.kind = LOG_SCENE_QUERY}};

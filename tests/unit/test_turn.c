@@ -461,8 +461,8 @@ static void set_rounded(struct resting *rest, int f, const double *vertices, siz
     assert_int_equal(fmb_body_inflate(&rest->body[f], radius), FMB_OK);
 }
 
-/* Balls, capsules and padded plates roll, yaw and slide on a table, on an edge of it, and on each
- * other, hang on a post, and graze a ceiling. */
+/* Rounded bodies that yaw and slide: a ball, a capsule and a plate on a table, a ball on the edge
+ * of the table, and a capsule on a capsule. A capsule also hangs on a post and grazes a ceiling. */
 static void rounded_bodies_rest_and_hang(void **state)
 {
     static const double rod[] = {-1, 0, 0, 1, 0, 0}, across[] = {0, -1, 0, 0, 1, 0};
@@ -498,7 +498,7 @@ static void rounded_bodies_rest_and_hang(void **state)
                : k == 0 ? FMB_TOUCHING
                         : FMB_SEPARATED,
                0, 2);
-        /* At half time, the end of a rod is nearest to a ceiling. */
+        /* At half time, an end of the capsule is nearest to the ceiling. */
         box_of(8, 1, 8, &rest.body[0]);
         set_rounded(&rest, 1, across, 6, 0.5);
         rest.placement[0].position[1] = 2 + k * e;
@@ -618,9 +618,9 @@ static void the_end_of_a_graze_is_that_of_exact_poses(void **state)
     assert_true(answer.contact[1] <= 0.2896245213189829 + 1e-12);
 }
 
-/* Frames whose centres agree overlap deeply, but the origin is often on the boundary of a simplex
- * that a search finds. The greatest depths are those of parallel faces, or of squares turned by 45
- * degrees against each other. */
+/* Frames with a common centre overlap deeply, but the origin is often on the boundary of the
+ * simplex with which a search ends. The depth is greatest when faces are parallel, or when squares
+ * are turned by 45 degrees against each other. */
 static void bodies_with_a_common_centre(void **state)
 {
     static const struct {
@@ -654,8 +654,8 @@ static void bodies_with_a_common_centre(void **state)
     }
 }
 
-/* A point on a circle passes another point that is some ulps beside the circle. The points have no
- * edges: only the direction between them separates them. */
+/* A point moves on a circle and passes another point, which is some ulps off the circle. Points
+ * have no edges: only the direction from point to point separates them. */
 static void points_pass_each_other_closely(void **state)
 {
     static const double end[] = {1, 0.9, 0.7};
@@ -940,8 +940,9 @@ static void pairs_without_a_verdict_are_named(void **state)
     free(memory_of_scene);
 }
 
-/* Numbers whose exponents span a thousand bits: both orders have the same answer, the gap encloses
- * 0 from the side of the verdict and costs no verdict, and the computation ends. */
+/* Numbers whose exponents span a thousand bits: both orders have the same answer, a query for the
+ * gap has the same verdict, the bounds of the gap do not contradict it, and the computation ends.
+ */
 static void hostile_exponents_end(void **state)
 {
     seed_of_draw = 9;

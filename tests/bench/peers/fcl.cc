@@ -12,9 +12,9 @@
 namespace
 {
 
-/* FCL's own interpolation, with the quaternions of struct peer_motion in place of slerp. Rotations
- * are about the same axis. The angular speed at s is 2 |q0 x q1| / |q(s)|^2 in the plane of the
- * quaternions; FCL needs a bound over the window. */
+/* FCL's own interpolation, but with the quaternions of struct peer_motion in place of slerp. Both
+ * rotate about the same axis. The angular speed at s is 2 |q0 x q1| / |q(s)|^2, with the product in
+ * the plane of the quaternions. FCL needs an upper bound over the window. */
 class Motion final : public fcl::InterpMotion<double>
 {
    public:
@@ -70,7 +70,7 @@ using Object = std::unique_ptr<fcl::CollisionObjectd>;
 
 struct Body {
     Object object;
-    std::unique_ptr<Motion> motion; /* of a solid that has one */
+    std::unique_ptr<Motion> motion; /* NULL: the solid has none */
 };
 
 /* A box, a sphere or a capsule. */
@@ -168,7 +168,7 @@ double distance_tight(void *bodies, size_t a, size_t b)
     return fcl::distance(object(bodies, a), object(bodies, b), request, result);
 }
 
-/* A motion begins where it was last. */
+/* FCL starts from the last pose of a motion: both are reset to time 0. */
 double continuous(void *bodies, size_t a, size_t b, fcl::CCDSolverType solver)
 {
     const Body &one = body_at<Body>(bodies, a), &other = body_at<Body>(bodies, b);
@@ -213,6 +213,6 @@ const peer_library peer_library_fcl = {
     "(the default, libccd's MPR, does not end for some pairs); fcl distance, fcl 1e-10:\n"
     "fcl::distance() at the default tolerance of 1e-6 and at 1e-10; no depth: its signed\n"
     "distance ends the program by a failed assertion for some overlapping pairs. fcl advancement,\n"
-    "fcl naive: fcl::continuousCollide() by conservative advancement and at 10 poses, all else at\n"
-    "its defaults.",
+    "fcl naive: fcl::continuousCollide() by conservative advancement and at 10 poses, with all\n"
+    "other settings at their defaults.",
     bodies_open<Body, body_of>, bodies_close<Body>};

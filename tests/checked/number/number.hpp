@@ -344,7 +344,7 @@ inline number sqrt(number x)
     return rounded(value, from, false);
 }
 
-/* A whole number counts as given. */
+/* The result, a whole number, counts as given. */
 inline number floor(number x)
 {
     return std::floor(x.value);
