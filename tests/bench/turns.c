@@ -93,7 +93,7 @@ static void turn_by(const double q[4], double angle, const double axis[3], doubl
     vector_add(out + 1, q[0], by);
 }
 
-/* A is a box of any shape, B a rod. */
+/* Of boxes, B is a rod. */
 static void draw_anyhow(struct draw *draw, const struct kind *kind, struct draft draft[2])
 {
     for (int side = 0; side < 2; side++) {
@@ -199,8 +199,8 @@ static void make_body(struct turns *turns, const struct draft *draft, bool hull,
     place(draft, placement);
 }
 
-/* Shifts B along the direction of the gap until both bounds are near the target. Returns false if
- * they do not become so, or if the pair has no gap. */
+/* Shifts B along the direction of the gap until the middle of its bounds is near the target.
+ * Returns false if that takes too many shifts, or if the first gap is far from 0 or missing. */
 static bool shift(const struct kind *kind, struct draft *draft, struct fmb_placement *a,
                   struct fmb_placement *b)
 {
@@ -288,7 +288,7 @@ static int list_raced(enum contender raced[CONTENDERS_AND_PEERS])
     return count;
 }
 
-/* The share of decided pairs for which a contender is wrong. Touching is contact; a missing answer
+/* The share of pairs for which a contender is wrong. Touching is contact; a missing answer
  * is wrong. */
 static double wrong_of(enum contender contender, const struct work *work,
                        const unsigned char *certified)

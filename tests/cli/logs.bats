@@ -66,7 +66,7 @@ capped_at() {
         "[$scenes | select(.times > 0 and .boxes > 0) | .status] | unique == [0]" \
         "[$pairs | select(.gaps == 2) | [.verdicts[0], .witnesses]] | unique == [[1,5],[1,7],[2,0],[3,0],[3,5],[3,7]]" \
         "[$scenes | select(.pairs > 0 and .gaps > 0) | .verdicts[]] | unique == [1,2,3]" \
-        "[$scenes | select(.pairs == 0 and .gaps > 0) | .verdicts[]] | contains([1,2,3])"
+        "[1,2,3] - [$scenes | select(.pairs == 0 and .gaps > 0) | .verdicts[]] == []"
 }
 
 @test "the set has late, early and missing results, restarts and parallel services" {
@@ -81,10 +81,9 @@ capped_at() {
     holds -s "$BATS_TEST_TMPDIR/events" '[.[] | .server // empty] | unique == [500, 501, 502, 503, 600]' \
         'any(.[]; .channel == "FMB_DEFINITION")' \
         '[.[] | select(.server == 503 or .server == 600)] | group_by([.client, .number])
-            | map(map(.status)) | unique | contains([[0,1]]) and contains([[0,0]])' \
+            | [[0,1], [0,0]] - map(map(.status)) == []' \
         '[.[] | select(.channel == "FMB_PAIR_RESULT" and .server == 500)]
-            | group_by([.client, .number]) | map(map(.status)) | unique
-            | contains([[0,0,0]]) and contains([[2,2,0]])'
+            | group_by([.client, .number]) | [[0,0,0], [2,2,0]] - map(map(.status)) == []'
 }
 
 @test "the log of pairs that turn has all verdicts, each with every kind of answer that it can have" {
@@ -93,8 +92,8 @@ capped_at() {
     # Methods in doubles cannot decide them. Pairs that touch have no certificate.
     holds -s "$BATS_TEST_TMPDIR/events" \
         "[$pairs | select(.gaps == 2) | .verdicts[0]] | unique == [1,2,3]" \
-        "[$pairs | select(.boxes > 0) | [.verdicts[0], .boxes]] | contains([[2,6],[3,4],[3,6]])" \
-        "[$pairs | select(.points > 0) | [.verdicts[0], .points]] | contains([[2,4],[3,3],[3,4]])" \
+        "[[2,6],[3,4],[3,6]] - [$pairs | select(.boxes > 0) | [.verdicts[0], .boxes]] == []" \
+        "[[2,4],[3,3],[3,4]] - [$pairs | select(.points > 0) | [.verdicts[0], .points]] == []" \
         "[$pairs | select(.certificate > 0) | .verdicts[0]] | unique == [1,3]" \
         '[.[] | select(.status == 13) | .method] | unique == [0]' \
         '[.[] | select(.channel == "FMB_SCENE_RESULT") | .verdicts[]] | unique == [0,1,2,3]'

@@ -52,7 +52,7 @@ get() {
     inside fmb-check-path /proof
     [ -f "$root/lib/systemd/system/fmbd.service" ]
     grep -q '^ExecStart="/usr/bin/fmbd"$' "$root/lib/systemd/system/fmbd.service"
-    [ ! -e "$root$enabled" ]
+    [ ! -L "$root$enabled" ]
     grep -q daemon-reload "$root/asked"
     [ -z "$(grep start "$root/asked")" ]
     for file in fmb/README.md fmb/CHANGELOG.md fmb/examples/table.json fmb/examples/robot/robot.urdf; do

@@ -309,7 +309,7 @@ END
     echo "## $version (2030-01-31)" > .github/CHANGELOG.md
     run make release
     [ "$status" != 0 ]
-    [[ $output == *"not committed"* ]]
+    [[ $output == *"uncommitted"* ]]
     commit second
     echo other > untracked
     make release

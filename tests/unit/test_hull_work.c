@@ -198,7 +198,6 @@ static double work_of_certificate(const struct large large[2], int *steps)
     return most;
 }
 
-/* most: nanoseconds of a pair. */
 static double work_of_turning_certificate(const struct large large[2], int *steps)
 {
     const struct fmb_placement placements[2] = {large[0].at, large[1].at};
@@ -206,6 +205,7 @@ static double work_of_turning_certificate(const struct large large[2], int *step
     return work_of_certificate_step(placements, 1, work, steps, &made);
 }
 
+/* most_allowed: nanoseconds of a pair. */
 static void assert_short(const char *name, const int range[2], bool turns, double most_allowed,
                          work_of_step *step)
 {
@@ -228,7 +228,7 @@ static void assert_short(const char *name, const int range[2], bool turns, doubl
         most = fmax(most, of_turn);
     }
     printf("# %d steps, at most %.0f ns; a pair at most %.0f ns\n", steps, most, most_of_pair);
-    assert_true(most <= ns_most && most_of_pair <= most_allowed);
+    assert_true(most > 0 && most <= ns_most && most_of_pair <= most_allowed);
     assert_true(scanned > 0 && exact_work > 0 && placed > 0);
 }
 

@@ -22,7 +22,9 @@ static char *unpack(const char *page, const char *id, size_t *size)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     enum { BYTES_MAX = 1 << 27 };
-    unsigned char value[128] = {0};
+    unsigned char value[128];
+    memset(value, 64, sizeof value);
+    value['='] = 0;
     for (unsigned char k = 0; k < 64; k++)
         value[(int) digits[k]] = k;
     char tag[60];
@@ -41,7 +43,8 @@ static char *unpack(const char *page, const char *id, size_t *size)
     for (; at < end; at += 4) {
         unsigned bits = 0, count = 0;
         for (int k = 0; k < 4; k++) {
-            bits = bits << 6 | value[at[k] & 127];
+            assert_true((unsigned char) at[k] < 128 && value[(int) at[k]] < 64);
+            bits = bits << 6 | value[(int) at[k]];
             count += at[k] != '=';
         }
         for (unsigned k = 0; k + 1 < count; k++)

@@ -658,11 +658,12 @@ static void set_box(const struct turn_path *path, double first, double last,
 }
 
 /* Sets the gap of a pair that touches at s: 0, with s as time, and the direction of the greatest
- * lower bound among the directions of the last searches and the directions by vertices. */
+ * lower bound among the directions of the last searches and, of frames without a radius, the
+ * directions by vertices. */
 static void set_touching_gap(struct turn_decision *decision, double s, struct fmb_gap *out)
 {
     struct turn_path *path = &decision->path;
-    struct turn_direction direction[4];
+    struct turn_direction direction[6];
     double most = -INFINITY;
     memset(out, 0, sizeof *out);
     out->direction[0] = 1;
@@ -672,7 +673,7 @@ static void set_touching_gap(struct turn_decision *decision, double s, struct fm
     look(decision, s);
     unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
     if (vec3_dot(decision->toward, decision->toward) > 0)
-        count += turn_directions(path, decision->toward, 0, &direction[1]) > 0;
+        count += turn_directions(path, decision->toward, 0, &direction[count]);
     decision->corner_count = 0;
     if (!path->pair.rounded)
         begin_corners(decision);

@@ -382,7 +382,8 @@ static void end_scan(struct turn_trial *trial)
     trial->next = 0;
 }
 
-/* value := (value - R |m| norm) 2^ROOT_BITS, or less. */
+/* value := (value - R |m| norm) 2^ROOT_BITS, or less. In: the direction m is fixed in a frame; for
+ * frames with a radius no product of edges is tried. */
 static void subtract_radius(const struct turn_exact *exact)
 {
     struct work *work = &exact->trial->work;
