@@ -158,19 +158,6 @@ static int list_raced(const struct cell *cell, enum contender raced[CONTENDERS_A
     return count;
 }
 
-/* The share of its verdicts that contradict the certified ones; touching is contact. No answer is
- * wrong too. */
-static double wrong_of(enum contender contender, const struct work *work,
-                       const unsigned char *certified)
-{
-    size_t wrong = 0;
-    contender_run(contender, work);
-    for (size_t i = 0; i < work->count; i++)
-        wrong += work->verdicts[i] == 0 ||
-                 (work->verdicts[i] == FMB_SEPARATED) != (certified[i] == FMB_SEPARATED);
-    return (double) wrong / (double) work->count;
-}
-
 static bool any_meets(const unsigned char *verdict, size_t count)
 {
     bool any = false;
@@ -218,7 +205,7 @@ static void race(struct bench *bench, const struct work *work, const enum conten
             printf(" %8.1f", times[i].median - times[i - 1].median);
         else
             printf(" %8s", "");
-        put_method(bench, raced[i], &times[i], wrong_of(raced[i], work, certified));
+        put_method(bench, raced[i], &times[i], contender_wrong(raced[i], work, certified));
     }
     json_end(&bench->json, ']');
     free(certified);

@@ -222,6 +222,18 @@ void contender_run(enum contender contender, const struct work *work)
         run_peer(work, (int) (contender - CONTENDERS));
 }
 
+double contender_wrong(enum contender contender, const struct work *work,
+                       const unsigned char *certified)
+{
+    size_t wrong = 0;
+    contender_run(contender, work);
+    for (size_t i = 0; i < work->count; i++)
+        wrong += certified[i] != 0 &&
+                 (work->verdicts[i] == 0 ||
+                  (work->verdicts[i] == FMB_SEPARATED) != (certified[i] == FMB_SEPARATED));
+    return (double) wrong / (double) work->count;
+}
+
 void contender_help(void)
 {
     printf(

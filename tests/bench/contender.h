@@ -61,6 +61,11 @@ bool contender_runs(enum contender contender, const struct cell *cell);
  * answer. */
 void contender_run(enum contender contender, const struct work *work);
 
+/* Runs it. Returns the share of pairs for which it contradicts the certified verdicts. Touching is
+ * contact, no answer is wrong, and a pair without a certified verdict is never wrong. */
+double contender_wrong(enum contender contender, const struct work *work,
+                       const unsigned char *certified);
+
 /* Lines on what the names mean. */
 void contender_help(void);
 

@@ -288,20 +288,6 @@ static int list_raced(enum contender raced[CONTENDERS_AND_PEERS])
     return count;
 }
 
-/* The share of pairs for which a contender is wrong. Touching is contact; a missing answer
- * is wrong. */
-static double wrong_of(enum contender contender, const struct work *work,
-                       const unsigned char *certified)
-{
-    size_t wrong = 0;
-    contender_run(contender, work);
-    for (size_t i = 0; i < work->count; i++)
-        wrong += certified[i] != 0 &&
-                 (work->verdicts[i] == 0 ||
-                  (work->verdicts[i] == FMB_SEPARATED) != (certified[i] == FMB_SEPARATED));
-    return (double) wrong / (double) work->count;
-}
-
 static double share_of(const unsigned char *verdict, size_t count, enum fmb_verdict least,
                        enum fmb_verdict most)
 {
@@ -336,7 +322,7 @@ static void row(struct bench *bench, const struct kind *kind, const enum contend
     json_number(&bench->json, "undecided", undecided);
     json_begin(&bench->json, "methods", '[');
     for (int i = 0; i < count; i++) {
-        const double wrong = wrong_of(raced[i], work, certified);
+        const double wrong = contender_wrong(raced[i], work, certified);
         printf(" %10.0f %5.1f", ns[i].median, 100 * wrong);
         json_begin(&bench->json, NULL, '{');
         json_string(&bench->json, "name", contender_name(raced[i]));
