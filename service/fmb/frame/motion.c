@@ -169,7 +169,7 @@ void fmb_pose_at(const struct fmb_placement *placement, double duration, double 
  * N(q0, q1) x / q0 . q1 and N(q1, q1) x / q1 . q1. The weights are the divisors, all positive, so
  * the curve lies in the convex hull of these points. p(s) lies between p0 and p1. So on each axis
  * the least coordinate of a body is at least the lesser of p0 and p1 plus the least coordinate of
- * three linear images of its box; the greatest coordinate is bounded likewise.
+ * three linear images of its box. The greatest coordinate has the corresponding upper bound.
  *
  * Accuracy, with u = 2^-53, L = |q| |r|, w the divisor and S = sum_j (|m_j| + h_j) for the centre m
  * and the half extents h of the box. An entry of N(q, r) is off by 4.01 u L (motion.h), and so is

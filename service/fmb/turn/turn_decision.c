@@ -613,7 +613,7 @@ static double seconds(double s, double duration, bool up)
 enum { BOX_PIECES = 16 };
 
 /* Adds the intersection of the boxes of both frames over an interval to a box. A position passes
- * three roundings, and two more if the end is that of a velocity: 8 u of both ends cover these. An
+ * three roundings, and two more if the body has a velocity: 8 u of both ends cover these. An
  * orientation is off by 2.9 u |q| (turn_path.h), which MOTION_BOX_ERROR covers. */
 static void add_box(const struct turn_path *path, double lo, double hi, double box[2][FMB_DIM_MAX])
 {

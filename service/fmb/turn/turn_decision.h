@@ -40,6 +40,8 @@
 
 struct programs;
 
+/* TURN_CORNERS: both signs of the normals of all triples of 6 vertices of each frame, and of the
+ * products of all pairs: 2 (20 + 20 + 15 * 15). */
 enum { TURN_DEPTH = 50, TURN_STACK = TURN_DEPTH + 4, TURN_KNOWN = 8, TURN_CORNERS = 530 };
 
 struct turn_interval {

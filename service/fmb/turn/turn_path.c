@@ -174,8 +174,8 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
 
 /* For a vertex of one frame and a face of the other, the direction is fixed in the frame of the
  * face, which has more supporting vertices. For two edges that are not parallel it is their
- * product. For two parallel edges, the direction may be fixed in either frame; likewise for frames
- * with a radius, since a frame may turn about a vertex. */
+ * product. It may be fixed in either frame for two parallel edges, and for frames with a radius,
+ * since a frame may turn about a vertex. */
 unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_DIM_MAX],
                          double slack, struct turn_direction out[3])
 {
