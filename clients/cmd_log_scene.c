@@ -4,16 +4,19 @@
 #include "allocate.h"
 #include "args.h"
 #include "complain.h"
+#include "definitions.h"
+#include "input.h"
 #include "local_answerer.h"
-#include "log_query.h"
 #include "progress.h"
 #include "scene_json.h"
-#include "logged_query.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char usage[] =
     "usage: fmb log scene [OPTIONS] LOG...\n"
@@ -26,9 +29,9 @@ static const char usage[] =
     "Of several logs the last one contains the query, and the others are read for\n"
     "definitions of bodies. Bodies that came by handle get their frames back.\n"
     "\n"
-    "  --event N            the event with this number, as 'fmb replay' prints it: a\n"
-    "                       query, or the result of one. Where numbers repeat, 'fmb\n"
-    "                       log cut' copies the log with new ones\n"
+    "  --event N            the query's event, as 'fmb replay' and 'fmb log results'\n"
+    "                       print its number. Where numbers repeat, 'fmb log cut'\n"
+    "                       copies the log with new ones\n"
     "  -p, --prefix P       the service's channels begin with P\n"
     "  -h, --help\n"
     "\n"
@@ -44,37 +47,135 @@ static const char usage[] =
 /* The value of an option that is not given. */
 static const long not_given = LONG_MIN;
 
+struct search {
+    const struct args *args;
+    int64_t number; /* of the event */
+    struct input input;
+    struct log_channels channels;
+    /* The bodies of handles, and the names of bodies, from anywhere in the logs. */
+    struct definitions *definitions;
+    struct body_names *names;
+    int64_t count; /* events with this number in the last log */
+    /* Of the first of them: */
+    int64_t offset;
+    enum log_kind kind;
+    uint32_t size;
+    unsigned char bytes[LOG_DATA_MAX];
+    struct logged_query query;
+};
+
+/* ---- Reading the logs ---- */
+
+static void take_event(struct search *search, const struct log_event *event)
+{
+    const enum log_kind kind = log_kind_of(&search->channels, event);
+    definitions_add_message(search->definitions, search->names, kind, event->data,
+                            (uint32_t) event->kept);
+    if (search->input.log + 1 < search->args->operand_count || event->number != search->number ||
+        search->count++ > 0)
+        return;
+    search->offset = event->offset;
+    search->kind = kind;
+    search->size = (uint32_t) event->kept;
+    memcpy(search->bytes, event->data, event->kept);
+}
+
+/* Returns false after an error, which was reported. */
+static bool read_logs(struct search *search)
+{
+    struct input *input = &search->input;
+    struct log_event event;
+    struct log_damage damage;
+    enum log_outcome outcome;
+    if (!input_open(input, search->args->operands, search->args->operand_count))
+        return false;
+    progress_begin("bytes");
+    while ((outcome = input_next(input, &event, &damage)) < LOG_END) {
+        if (outcome == LOG_EVENT)
+            take_event(search, &event);
+        progress_to(input->passed, input_size(input));
+    }
+    progress_end();
+    if (outcome == LOG_FAILED)
+        complain("%s: %s", search->args->operands[input->log], strerror(errno));
+    return outcome == LOG_END;
+}
+
+/* ---- The query ---- */
+
+/* Reports why there is no scene. Returns false. */
+__attribute__((format(printf, 2, 3))) static bool refuse(const struct search *search,
+                                                         const char *format, ...)
+{
+    const struct args *args = search->args;
+    char why[LOG_WHY_MAX];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(why, sizeof why, format, list);
+    va_end(list);
+    complain("%s: event %" PRId64 "%s", args->operands[args->operand_count - 1], search->number,
+             why);
+    return false;
+}
+
+/* Decodes the query. Handles are replaced by their bodies. A placement without a name gets the last
+ * one of its body. */
+static bool read_query(struct search *search)
+{
+    struct logged_query *query = &search->query;
+    if (search->count == 0)
+        return refuse(search, ": there is none");
+    if (search->count > 1)
+        return refuse(search, " is there %" PRId64 " times: 'fmb log cut' numbers events anew",
+                      search->count);
+    if (!log_kind_is_query(search->kind))
+        return refuse(search, ": not a query of this service (--prefix chooses it)");
+    const char *error = logged_query_read(query, search->kind, search->bytes, search->size);
+    if (error)
+        return refuse(search, ": %s", error);
+    for (int32_t i = 0; i < query->placement_count; i++) {
+        struct fmb_placement *placed = &query->placement[i].placed;
+        if (!placed->name || !*placed->name)
+            placed->name = body_names_find(search->names, query->header.client_id, placed->id);
+    }
+    const int32_t missing = definitions_fill(search->definitions, query);
+    return missing < 0 ||
+           refuse(search,
+                  ": placement %d, body %" PRId64 ", came by a handle that no log here defines",
+                  (int) missing, query->placement[missing].placed.id);
+}
+
 /* Reports the detail of the result of a query that the service refuses. */
-static void report_refusal(const struct log_query *query, const struct new_result *refused)
+static void report_refusal(const struct search *search, const struct new_result *refused)
 {
     struct logged_result *result = allocate(1, sizeof *result);
-    logged_result_read(result, query->query.kind, refused->bytes, (uint32_t) refused->size);
-    complain("event %" PRId64 ": the service refuses it: %s", query->number, result->head.detail);
+    logged_result_read(result, search->kind, refused->bytes, (uint32_t) refused->size);
+    complain("event %" PRId64 ": the service refuses it: %s", search->number, result->head.detail);
     free(result);
 }
 
 /* Whether the service accepts the query. A pair that its method cannot decide is accepted. */
-static bool check_query(const struct log_query *query)
+static bool check_query(const struct search *search)
 {
-    if (query->size > QUERY_BYTES_MAX) {
-        complain("event %" PRId64 ": the service refuses it: longer than %d bytes", query->number,
+    if (search->size > QUERY_BYTES_MAX) {
+        complain("event %" PRId64 ": the service refuses it: longer than %d bytes", search->number,
                  QUERY_BYTES_MAX);
         return false;
     }
-    struct local_answerer *answerer = local_answerer_open(FMB_FRAMES_MAX, query->definitions);
+    struct local_answerer *answerer = local_answerer_open(FMB_FRAMES_MAX, search->definitions);
     struct new_result result;
-    local_answer(answerer, query->query.kind, query->bytes, (uint32_t) query->size, &result);
-    const bool accepted = result.status == FMB_OK || (query->query.kind == LOG_PAIR_QUERY &&
-                                                      result.status == FMB_CANNOT_DECIDE);
+    local_answer(answerer, search->kind, search->bytes, search->size, &result);
+    const bool accepted = result.status == FMB_OK ||
+                          (search->kind == LOG_PAIR_QUERY && result.status == FMB_CANNOT_DECIDE);
     if (!accepted)
-        report_refusal(query, &result);
+        report_refusal(search, &result);
     local_answerer_close(answerer);
     return accepted;
 }
 
 /* ---- Reports on stderr ---- */
 
-static void report_ids(struct logged_query *query, const struct fmb_placement *printed)
+static void report_ids(const struct logged_query *query, const struct fmb_placement *printed)
 {
     const struct query_placement *placement = query->placement;
     for (int32_t i = 0; i < query->placement_count; i++) {
@@ -88,16 +189,16 @@ static void report_ids(struct logged_query *query, const struct fmb_placement *p
     }
 }
 
-static void report_command(const struct log_query *query)
+static void report_command(const struct search *search)
 {
-    const struct logged_query *any = &query->query;
-    const bool is_pair = any->kind == LOG_PAIR_QUERY;
-    const int32_t method = is_pair ? any->pair.method : any->scene.method;
-    const int32_t want = is_pair ? any->pair.want : any->scene.want;
+    const struct logged_query *query = &search->query;
+    const bool is_pair = query->kind == LOG_PAIR_QUERY;
+    const int32_t method = is_pair ? query->pair.method : query->scene.method;
+    const int32_t want = is_pair ? query->pair.want : query->scene.want;
     fprintf(stderr,
             "fmb: event %" PRId64 " (offset %" PRId64 "), client %" PRId64
             ", sequence number %" PRId64 "; to repeat it: fmb query --local --json",
-            query->number, query->offset, query->key.client_id, query->key.sequence_number);
+            search->number, search->offset, query->header.client_id, query->header.sequence_number);
     if (method != 0)
         fprintf(stderr, " --method %s", fmb_method_by_number(method)->name);
     fprintf(stderr, "%s%s%s%s\n", want & FMB_WANT_BOX ? " --box" : "",
@@ -107,31 +208,32 @@ static void report_command(const struct log_query *query)
 
 /* ---- The command ---- */
 
-static int print_scene(struct log_query *query)
+static int print_scene(const struct search *search)
 {
     struct owned_scene scene;
-    scene_of_query(&query->query, &scene);
+    scene_of_query(&search->query, &scene);
     scene_json_write(stdout, &scene);
-    report_ids(&query->query, scene.scene.placements);
-    report_command(query);
+    report_ids(&search->query, scene.scene.placements);
+    report_command(search);
     scene_clear(&scene);
     return output_flush() ? ARGS_ANSWERED : ARGS_USAGE;
 }
 
-static int run_scene(const struct log_query_options *options)
+static int run_scene(const struct args *args, int64_t event)
 {
-    static const int code_of[] = {[LOG_QUERY_FOUND] = ARGS_ANSWERED,
-                                  [LOG_QUERY_NONE] = ARGS_FAILED,
-                                  [LOG_QUERY_FAILED] = ARGS_USAGE};
-    struct log_query *query = allocate(1, sizeof *query);
-    progress_begin("bytes");
-    const enum log_query_outcome outcome = log_query(options, query);
-    progress_end();
-    int code = code_of[outcome];
-    if (outcome == LOG_QUERY_FOUND)
-        code = check_query(query) ? print_scene(query) : ARGS_FAILED;
-    log_query_clear(query);
-    free(query);
+    struct search *search = allocate(1, sizeof *search);
+    int code = ARGS_USAGE;
+    search->args = args;
+    search->number = event;
+    search->channels = log_channels(args->bus.prefix);
+    search->definitions = definitions_open();
+    search->names = body_names_open();
+    if (read_logs(search))
+        code = read_query(search) && check_query(search) ? print_scene(search) : ARGS_FAILED;
+    input_close(&search->input);
+    definitions_close(search->definitions);
+    body_names_close(search->names);
+    free(search);
     return code;
 }
 
@@ -147,12 +249,7 @@ int cmd_log_scene(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (event == not_given) {
-        args_error(&args, "expected --event N");
+    if (event == not_given && !args_error(&args, "expected --event N"))
         return ARGS_USAGE;
-    }
-    return run_scene(&(struct log_query_options){.log = args.operands,
-                                                 .log_count = args.operand_count,
-                                                 .prefix = args.bus.prefix,
-                                                 .event = event});
+    return run_scene(&args, event);
 }
