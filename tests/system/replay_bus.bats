@@ -344,7 +344,7 @@ event() {
     code=0
     "$FMB" replay --bus --lcm-url udpm://239.255.76.67 --write-golden golden arm.log > stdout 2> stderr || code=$?
     [ "$code" = 2 ]
-    grep -q 'has no port' stderr
+    grep -q 'is not an LCM bus' stderr
     # Nothing was begun.
     [ ! -s stdout ]
     [ ! -e golden ]

@@ -165,39 +165,44 @@ static void urls_mean_what_they_mean_to_lcm(void **state)
 
 static void bad_urls_are_refused_in_one_line(void **state)
 {
-    static const char *const bad[][2] = {
-        {"tcpq://127.0.0.1:7700", "write udpm://" GROUP ":7667"},
-        {"file:///p.log?mode=w", "write udpm://" GROUP ":7667"},
-        {"udpm:/" GROUP ":7667", "write udpm://" GROUP ":7667"},
-        {"udpm://127.0.0.1:7667", "with ?ttl=1 after it to reach other hosts"},
-        {"udpm://240.0.0.1:7667", "not a multicast group"},
-        {"udpm://223.255.255.255:7667", "not a multicast group"},
-        {"udpm://239.255.76.67.1.2.3.4.5.6:7667", "not a multicast group"},
-        {"udpm://:7667", "'' is not a multicast group"},
-        {"udpm://" GROUP, "write udpm://" GROUP ":7667"},
-        {"udpm://" GROUP "?ttl=0", "has no port"},
-        {"udpm://" GROUP ":", "'' is not a port"},
-        {"udpm://" GROUP ":0", "'0' is not a port"},
-        {"udpm://" GROUP ":65536", "'65536' is not a port"},
-        {"udpm://" GROUP ":7667/", "not a port"},
-        {"udpm://" GROUP ":99999999999999999999", "not a port"},
-        {"udpm://?ttl=256", "'256' is not a ttl"},
-        {"udpm://?ttl=-1", "not a ttl"},
-        {"udpm://?ttl=", "'' is not a ttl"},
-        {"udpm://?ttl=1x", "not a ttl"},
-        {"udpm://?recv_buf_size=0", "'0' is not a recv_buf_size"},
-        {"udpm://?recv_buf_size=1073741824", "not a recv_buf_size"},
-        {"udpm://?ttl=0&", "unknown option ''"},
-        {"udpm://?TTL=0", "unknown option 'TTL=0'"},
-        {"udpm://?ttl=0&bogus=1", "unknown option 'bogus=1'"},
+    static const char *const bad[] = {
+        "tcpq://127.0.0.1:7700",
+        "file:///p.log?mode=w",
+        "udpm:/" GROUP ":7667",
+        "udpm://127.0.0.1:7667",
+        "udpm://240.0.0.1:7667",
+        "udpm://223.255.255.255:7667",
+        "udpm://239.255.76.67.1.2.3.4.5.6:7667",
+        "udpm://:7667",
+        "udpm://" GROUP,
+        "udpm://" GROUP "?ttl=0",
+        "udpm://" GROUP ":",
+        "udpm://" GROUP ":0",
+        "udpm://" GROUP ":65536",
+        "udpm://" GROUP ":7667/",
+        "udpm://" GROUP ":99999999999999999999",
+        "udpm://?ttl=256",
+        "udpm://?ttl=-1",
+        "udpm://?ttl= 1",
+        "udpm://?ttl=",
+        "udpm://?ttl",
+        "udpm://?ttl=1x",
+        "udpm://?recv_buf_size=0",
+        "udpm://?recv_buf_size=1073741824",
+        "udpm://?ttl=0&",
+        "udpm://?&ttl=0",
+        "udpm://?TTL=0",
+        "udpm://?ttl=0&bogus=1",
     };
     for (size_t i = 0; i < COUNT(bad); i++) {
         struct bus_url url;
-        char why[BUS_WHY_MAX] = "";
-        if (bus_url_parse(bad[i][0], &url, why) || !strstr(why, bad[i][1]))
-            fail_msg("%s: %s", bad[i][0], why);
+        char why[BUS_WHY_MAX] = "", quoted[128];
+        snprintf(quoted, sizeof quoted, "'%s' is not an LCM bus", bad[i]);
+        if (bus_url_parse(bad[i], &url, why) || strncmp(why, quoted, strlen(quoted)) != 0 ||
+            !strstr(why, "write udpm://" GROUP ":7667"))
+            fail_msg("%s: %s", bad[i], why);
         assert_null(strchr(why, '\n'));
-        assert_null(bus_open(bad[i][0], why));
+        assert_null(bus_open(bad[i], why));
     }
 }
 
