@@ -23,9 +23,9 @@
  * indices: vertices with equal coordinates (0 equals -0) become one, in the order of their first
  * appearance. Normals and attributes of STL are ignored.
  *
- * Counts in a file are not trusted: a count that the remaining bytes cannot hold is an error, found
- * before memory is allocated. After the last element of a PLY file only white space may follow; a
- * binary STL file holds exactly the bytes of its facets. */
+ * Counts in a file are not trusted: memory grows with the elements that are read. After the last
+ * element of a PLY file only white space may follow; a binary STL file holds exactly the bytes of
+ * its facets. */
 #ifndef MESH_H
 #define MESH_H
 

@@ -3,7 +3,6 @@
 #include "mesh_source.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ELEMENTS_MAX = 64, PROPERTIES_MAX = 256, WORDS_MAX = 6 };
@@ -44,13 +43,14 @@ struct element {
 
 struct ply {
     struct mesh_source *source;
-    struct mesh_build build; /* of faces; there is memory for as many as the header states */
+    struct mesh_build build;
     enum format format;
     bool has_format;
     size_t element_count, property_count, vertex_count;
     struct element element[ELEMENTS_MAX];
     struct property property[PROPERTIES_MAX];
     const unsigned char *value_at; /* of the last value that was read */
+    double position[3];            /* of the vertex that is being read */
 };
 
 /* A line of the header, divided into words. */
@@ -218,40 +218,17 @@ static bool read_line(struct ply *ply, const struct header_line *line)
                              mesh_word(source, keyword, text));
 }
 
-/* Least bytes of an element. In ASCII files each value takes a digit and a separator. A triangle
- * has a count and three indices. */
-static size_t least_size(const struct ply *ply, const struct element *element)
+/* Checks that the elements have what a mesh needs. */
+static bool check_elements(const struct ply *ply)
 {
-    size_t values = 0, bytes = 0;
-    for (size_t i = element->first; i < element->first + element->property_count; i++) {
-        const struct property *property = &ply->property[i];
-        const size_t triangle = property->role == INDICES ? 3 : property->count ? 0 : 1;
-        values += triangle + (property->count != NONE);
-        bytes += triangle * types[property->type].size + types[property->count].size;
-    }
-    return ply->format == ASCII ? 2 * values : bytes;
-}
-
-/* Checks that the elements have what a mesh needs, and that the file is large enough for their
- * counts. The last line may lack its end. */
-static bool check_elements(struct ply *ply)
-{
-    size_t left = mesh_left(ply->source) + (ply->format == ASCII);
     for (size_t i = 0; i < ply->element_count; i++) {
         const struct element *element = &ply->element[i];
-        const size_t size = least_size(ply, element);
         for (int axis = 0; element->kind == VERTICES && element->count > 0 && axis < 3; axis++)
             if (!(element->roles >> axis & 1))
                 return mesh_refuse(ply->source, element->line, "vertices without %c", "xyz"[axis]);
         if (element->kind == FACES && element->count > 0 && !(element->roles >> INDICES & 1))
             return mesh_refuse(ply->source, element->line,
                                "faces without vertex_indices or vertex_index");
-        if (size > 0 && element->count > left / size)
-            return mesh_refuse(ply->source, element->line,
-                               "the file is cut off, or this count is wrong: there is room "
-                               "for %zu at most",
-                               left / size);
-        left -= element->count * size;
     }
     return true;
 }
@@ -360,9 +337,8 @@ static bool read_list(struct ply *ply, const struct property *property)
     return true;
 }
 
-static bool read_property(struct ply *ply, const struct property *property, struct mesh *out)
+static bool read_property(struct ply *ply, const struct property *property)
 {
-    const size_t index = ply->source->index;
     double value;
     if (property->count != NONE)
         return read_list(ply, property);
@@ -370,7 +346,7 @@ static bool read_property(struct ply *ply, const struct property *property, stru
         return false;
     if (property->role == UNUSED)
         return true;
-    out->vertex[index][property->role] = value;
+    ply->position[property->role] = value;
     return isfinite(value) ||
            mesh_refuse(ply->source, ply->value_at, "%c is not finite", "xyz"[property->role]);
 }
@@ -378,7 +354,7 @@ static bool read_property(struct ply *ply, const struct property *property, stru
 /* ---- Elements ------------------------------------------------------------------------------- */
 
 /* Reads a vertex, a face or another element; in ASCII files it is a line. */
-static bool read_record(struct ply *ply, const struct element *element, struct mesh *out)
+static bool read_record(struct ply *ply, const struct element *element)
 {
     struct mesh_source *source = ply->source;
     char text[MESH_WORD_MAX];
@@ -386,8 +362,10 @@ static bool read_record(struct ply *ply, const struct element *element, struct m
         return mesh_refuse(source, source->at, "the file ends before %s %zu of %zu", source->within,
                            source->index, element->count);
     for (size_t i = 0; i < element->property_count; i++)
-        if (!read_property(ply, &ply->property[element->first + i], out))
+        if (!read_property(ply, &ply->property[element->first + i]))
             return false;
+    if (element->kind == VERTICES && !mesh_add_vertex(&ply->build, ply->position))
+        return false;
     mesh_report_progress(source);
     if (!source->text)
         return true;
@@ -398,33 +376,16 @@ static bool read_record(struct ply *ply, const struct element *element, struct m
 }
 
 /* Elements without properties take no bytes, whatever their count. */
-static bool read_element(struct ply *ply, const struct element *element, struct mesh *out)
+static bool read_element(struct ply *ply, const struct element *element)
 {
     struct mesh_source *source = ply->source;
     source->within = kind_name[element->kind];
     source->index = 0;
     for (; element->property_count > 0 && source->index < element->count; source->index++)
-        if (!read_record(ply, element, out))
+        if (!read_record(ply, element))
             return false;
     source->within = NULL;
     return true;
-}
-
-static bool allocate_element(struct ply *ply, const struct element *element, struct mesh *out)
-{
-    const bool vertices = element->kind == VERTICES;
-    void *memory;
-    if (element->kind == OTHERS || element->count == 0)
-        return true;
-    if (vertices) {
-        memory = out->vertex = calloc(element->count, sizeof *out->vertex);
-        out->vertex_count = element->count;
-    } else {
-        memory = out->face = calloc(element->count, sizeof *out->face);
-        ply->build.face_capacity = element->count;
-    }
-    return memory || mesh_refuse(ply->source, element->line, "there is no memory for %zu %s",
-                                 element->count, vertices ? "vertices" : "faces");
 }
 
 static bool read_end(struct mesh_source *source)
@@ -444,10 +405,7 @@ bool mesh_ply(struct mesh_source *source, struct mesh *out)
     if (!read_header(&ply))
         return false;
     for (size_t i = 0; i < ply.element_count; i++)
-        if (!allocate_element(&ply, &ply.element[i], out))
-            return false;
-    for (size_t i = 0; i < ply.element_count; i++)
-        if (!read_element(&ply, &ply.element[i], out))
+        if (!read_element(&ply, &ply.element[i]))
             return false;
     return read_end(source);
 }
