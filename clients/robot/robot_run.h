@@ -47,6 +47,52 @@ struct robot_run_options {
         "verbose", ARGS_FLAG, .out = &(options).verbose                                           \
     }
 
+/* The part of --help about these options. */
+#define ROBOT_RUN_USAGE                                                                  \
+    "Poses:\n"                                                                           \
+    "  --joints LIST        NAME=VALUE,...: values of joints without a column, in\n"     \
+    "                       radians, or lengths of prismatic joints. Without a value,\n" \
+    "                       a mimic joint follows the joint that it names; any other\n"  \
+    "                       has 0, or the middle of its limits if 0 is outside\n"        \
+    "  --joints-csv FILE    a table with a column for each joint that moves, named in\n" \
+    "                       its first line; columns for mimic joints, \"label\" and\n"   \
+    "                       \"time\" are optional. Other columns are ignored\n"          \
+    "  --base POSE          X,Y,Z or X,Y,Z,ROLL,PITCH,YAW: the pose of the root link,\n" \
+    "                       as in an <origin>\n"                                         \
+    "  --limit-slack D      how far values may be outside the limits of their joints,\n" \
+    "                       in radians or lengths, before they are refused (0.001;\n"    \
+    "                       inf: any). They are used as they are, and reported\n"        \
+    "\n"                                                                                 \
+    "Bodies:\n"                                                                          \
+    "  --with FILE          adds the bodies of a scene of JSON, with its ignored\n"      \
+    "                       pairs, duration and margin; or the links of a URDF, as\n"    \
+    "                       obstacles of one group. May be given several times. A\n"     \
+    "                       body with \"link\": NAME is carried by that link, and has\n" \
+    "                       its pose in the link. Links have the ids from 1 on;\n"       \
+    "                       bodies with one of these get others\n"                       \
+    "  --srdf FILE          ignores the pairs that an SRDF file disables, and no\n"      \
+    "                       other pairs of links\n"                                      \
+    "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by name;\n"    \
+    "                       may be given several times\n"                                \
+    "  --sides N            sides of the hulls that enclose cylinders, a multiple of\n"  \
+    "                       4 up to 512 (16). A hull extends beyond a cylinder of\n"     \
+    "                       radius r by at most r (1 / cos(pi/N) - 1): with 16 sides,\n" \
+    "                       0.02 r\n"                                                    \
+    "  --excess D           how far a hull may extend beyond its mesh (0), so that it\n" \
+    "                       needs fewer vertices. The largest distance by which one\n"   \
+    "                       does is reported\n"                                          \
+    "  --objects            a hull for each object (o) of an OBJ file, for convex\n"     \
+    "                       decompositions\n"                                            \
+    "  --package-path DIRS  folders to search for packages, separated by colons: a\n"    \
+    "                       mesh file package://NAME/FILE is NAME/FILE in the first\n"   \
+    "                       folder that has it; else FILE in the nearest folder above\n" \
+    "                       the robot that is called NAME, or whose package.xml has\n"   \
+    "                       this name\n"                                                 \
+    "\n"                                                                                 \
+    "Output:\n"                                                                          \
+    "  --verbose            lists the links, bodies and pairs that messages count\n"     \
+    "  -h, --help\n"
+
 /* Takes a text that may be given once: the last of several would hide the others. */
 bool robot_run_take_once(const struct args *args, void *out);
 bool robot_run_take_world(const struct args *args, void *out);
