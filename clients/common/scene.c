@@ -3,6 +3,7 @@
 #include "allocate.h"
 #include "complain.h"
 #include "frame_numbers.h"
+#include "keyed_hash.h"
 #include "number.h"
 
 #include <stdlib.h>
@@ -72,6 +73,40 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
             return status;
     }
     return fmb_body_make_frames(frames, count, body);
+}
+
+/* ---- Ids ---- */
+
+struct taken_id {
+    int64_t id;
+    UT_hash_handle hh;
+};
+
+size_t scene_free_ids(struct fmb_placement *placements, size_t count, bool anonymous)
+{
+    enum { WITHOUT = -1 };
+    struct taken_id *taken = allocate(count, sizeof *taken), *table = NULL, *found;
+    int64_t next = 1;
+    size_t changed = 0;
+    for (size_t i = 0; i < count; i++) {
+        const int64_t id = taken[i].id = placements[i].id;
+        HASH_FIND(hh, table, &taken[i].id, sizeof id, found);
+        if (found || (id == 0 && anonymous))
+            placements[i].id = WITHOUT;
+        else if (id != 0)
+            HASH_ADD(hh, table, id, sizeof id, &taken[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (placements[i].id != WITHOUT)
+            continue;
+        for (found = table; found; next += found != NULL)
+            HASH_FIND(hh, table, &next, sizeof next, found);
+        placements[i].id = next++;
+        changed++;
+    }
+    HASH_CLEAR(hh, table);
+    free(taken);
+    return changed;
 }
 
 /* ---- Pairs ---- */

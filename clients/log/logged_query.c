@@ -116,29 +116,6 @@ static const char *copy_text(const char *text, struct owned_scene *out)
     return text && query_name_ok(text) ? scene_text(out, text) : NULL;
 }
 
-/* Quadratic, as set_ids(), but scenes are small. */
-static bool has_id(const struct query_placement *placement, size_t count, int64_t id)
-{
-    for (size_t i = 0; i < count; i++)
-        if (placement[i].placed.id == id)
-            return true;
-    return false;
-}
-
-static void set_ids(const struct query_placement *placement, size_t count,
-                    struct fmb_placement *out)
-{
-    int64_t free_id = 1;
-    for (size_t i = 0; i < count; i++) {
-        out[i].id = placement[i].placed.id;
-        if (out[i].id != 0 && !has_id(placement, i, out[i].id))
-            continue;
-        while (has_id(placement, count, free_id))
-            free_id++;
-        out[i].id = free_id++;
-    }
-}
-
 /* grouped: whether the placements keep their groups. */
 static void set_bodies(const struct logged_query *query, bool grouped, struct owned_scene *scene)
 {
@@ -153,7 +130,7 @@ static void set_bodies(const struct logged_query *query, bool grouped, struct ow
         out[i].group = grouped ? out[i].group : 0;
         out[i].name = copy_text(out[i].name, scene);
     }
-    set_ids(placement, count, out);
+    scene_free_ids(out, count, true);
     scene->scene.placements = out;
     scene->scene.placement_count = count;
 }

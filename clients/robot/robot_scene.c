@@ -108,46 +108,16 @@ static bool add_bodies(struct fmb_robot_scene *scene, const struct fmb_robot_wor
     return good;
 }
 
-struct taken_id {
-    int64_t id;
-    bool again; /* an earlier body has it */
-    UT_hash_handle hh;
-};
-
-/* Gives new ids, above all others, to bodies whose ids links or earlier bodies have. */
-static bool set_ids(struct fmb_robot_scene *scene)
+/* Gives free ids to bodies whose ids links or earlier bodies have. */
+static void set_ids(struct fmb_robot_scene *scene)
 {
-    const size_t count = scene->owner.scene.placement_count;
-    struct taken_id *taken = allocate(count, sizeof *taken), *table = NULL, *found;
-    size_t changed = 0;
-    int64_t most = 0;
-    for (size_t i = 0; i < count; i++) {
-        const int64_t id = taken[i].id = scene->placements[i].id;
-        most = id > most ? id : most;
-        HASH_FIND(hh, table, &taken[i].id, sizeof id, found);
-        taken[i].again = found && id != 0;
-        if (!found)
-            HASH_ADD(hh, table, id, sizeof id, &taken[i]);
-    }
-    HASH_CLEAR(hh, table);
-    for (size_t i = 0; i < count; i++)
-        if (taken[i].again)
-            scene->placements[i].id = most + (int64_t) ++changed;
-    free(taken);
-    if (changed == 0)
-        return true;
-    const bool good = most + (int64_t) changed <= QUERY_ID_MAX;
-    if (good)
-        robot_say(&scene->notes,
-                  "ids of links (1 to %zu) or of others: %zu bodies get new ids, "
-                  "in order, from %" PRId64 " on",
-                  scene->robot->body_count, changed, most + 1);
-    else
-        robot_say(&scene->errors,
-                  "ids of links (1 to %zu) or of others, and none is left above the "
-                  "largest id: give bodies smaller ids",
-                  scene->robot->body_count);
-    return good;
+    const size_t changed =
+        scene_free_ids(scene->placements, scene->owner.scene.placement_count, false);
+    if (changed > 0)
+        robot_say(
+            &scene->notes,
+            "ids of links (1 to %zu) or of others: %zu bodies get the lowest free ids, in order",
+            scene->robot->body_count, changed);
 }
 
 /* Gives each rigid body of several links a group that no body of the world has. */
@@ -315,9 +285,10 @@ int fmb_robot_scene(const struct fmb_robot *robot, const struct fmb_robot_world 
     owner->scene.placement_count = robot->body_count;
     bool good = check_worlds(scene, worlds, world_count) &&
                 add_bodies(scene, worlds, world_count, true, index) &&
-                add_bodies(scene, worlds, world_count, false, index) && set_ids(scene);
+                add_bodies(scene, worlds, world_count, false, index);
     if (!good)
         return -1;
+    set_ids(scene);
     memcpy(scene->begin, scene->placements, count * sizeof *scene->begin);
     set_groups(scene);
     ignore_of_robot(scene);

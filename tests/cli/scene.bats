@@ -603,9 +603,9 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     scene robot.urdf --with world.json
     says 'pairs tested: 12, ignored: 3: 2 neighbours, 1 by scenes'
     shows '[.duration, .margin, [.bodies[].id], .bodies[3].name, .bodies[4].group, .ignore]'
-    is '[2,0.5,[1,2,3,8,7,9],"x",4,[[1,2],[2,3],[7,9]]]'
+    is '[2,0.5,[1,2,3,4,7,5],"x",4,[[1,2],[2,3],[7,5]]]'
     scene robot.urdf --with world.json --verbose
-    grep -qx 'fmb: ids of links (1 to 3) or of others: 2 bodies get new ids, in order, from 8 on' <<< "$stderr"
+    grep -qx 'fmb: ids of links (1 to 3) or of others: 2 bodies get the lowest free ids, in order' <<< "$stderr"
     # With times, its bodies move on from row to row.
     printf 'turn,slide,time\n0,0,-10.5\n0,0,-10\n' > t.csv
     scene robot.urdf --with world.json --joints-csv t.csv --margin 0
@@ -688,7 +688,7 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     scene arm.urdf --with a.json --with shelf --with b.json
     says 'pairs tested: 18, ignored: 3: 2 neighbours, 1 within groups'
     shows '[.duration, .margin, [.bodies[] | [.id, .name, .group]], .ignore, .bodies[5].position, .bodies[5].orientation[0] > 0.87]'
-    is '[2,0.75,[[1,"base",null],[2,"arm",null],[3,"tool",null],[9,"x",5],[10,"shelf",6],[11,"door",6],[12,"y",null]],[[1,2],[2,3]],[0,0,8],true]'
+    is '[2,0.75,[[1,"base",null],[2,"arm",null],[3,"tool",null],[9,"x",5],[4,"shelf",6],[5,"door",6],[6,"y",null]],[[1,2],[2,3]],[0,0,8],true]'
     # Two of them are of one group, and are not tested against each other.
     scene arm.urdf --with shelf --with shelf
     says 'pairs tested: 13, ignored: 8: 2 neighbours, 6 within groups'
