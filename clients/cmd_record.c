@@ -4,16 +4,22 @@
 #include "args.h"
 #include "clock.h"
 #include "complain.h"
+#include "escape.h"
 #include "fmb_client_raw.h"
+#include "json_write.h"
 #include "log_choice.h"
-#include "log_write.h"
-#include "record_report.h"
+#include "log_parts.h"
+#include "number.h"
 #include "process.h"
+#include "progress.h"
+#include "record_bodies.h"
 
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -70,12 +76,18 @@ struct recording {
     struct log_channels channels;
     struct log_parts parts;
     struct record_bodies *bodies;
-    struct recorded recorded;
     int64_t begin_ns;
-    int64_t utime;     /* when the newest message was received */
-    int64_t events;    /* messages that were written */
-    int error;         /* why the log cannot be written; 0: it can */
-    bool enough, line; /* line: the progress is shown */
+    int64_t utime;    /* when the newest message was received */
+    int64_t messages; /* that were written */
+    int error;        /* why the log cannot be written; 0: it can */
+    bool enough;
+    /* What is reported at the end. */
+    int64_t received[LOG_KINDS]; /* [kind] messages, written or not */
+    int64_t malformed;           /* messages of the service that cannot be decoded */
+    int64_t events, bytes;       /* of the log */
+    double seconds;
+    struct record_bodies_counts of_bodies;
+    struct bus_counts of_bus; /* dropped: messages missing from the log */
 };
 
 /* ---- Options --------------------------------------------------------------------------------- */
@@ -107,7 +119,7 @@ static bool write_event(struct recording *recording, const char *channel, const 
         return false;
     if (log_append(recording->parts.writer, recording->utime, channel, strlen(channel), bytes,
                    size)) {
-        recording->recorded.events++;
+        recording->events++;
         return true;
     }
     recording->error = errno;
@@ -139,7 +151,6 @@ static bool prepare(struct recording *recording, size_t channel_length, size_t s
 static void on_message(void *user, const struct bus_message *message)
 {
     struct recording *recording = user;
-    struct recorded *recorded = &recording->recorded;
     const struct log_event event = {.channel = message->channel,
                                     .channel_length = strlen(message->channel)};
     const enum log_kind kind = log_kind_of(&recording->channels, &event);
@@ -151,26 +162,24 @@ static void on_message(void *user, const struct bus_message *message)
     const enum record_bodies_owner owner = record_bodies_owner(recording->bodies);
     recording->utime = message->utime;
     if (owner == RECORD_OTHERS) {
-        recorded->received[kind]++;
-        recorded->malformed += wrong != NULL;
+        recording->received[kind]++;
+        recording->malformed += wrong != NULL;
     }
     if (owner == RECORD_OWN || !prepare(recording, event.channel_length, message->size) ||
         !write_event(recording, message->channel, message->bytes, message->size))
         return;
     record_bodies_keep(recording->bodies);
     if (owner == RECORD_OTHERS)
-        recording->enough = ++recording->events == recording->options->count;
+        recording->enough = ++recording->messages == recording->options->count;
 }
 
 /* ---- Recording ------------------------------------------------------------------------------- */
 
 static const int64_t line_ns = 250000000;
 
-static bool bus_failed(struct recording *recording)
+static bool bus_failed(void)
 {
-    const int error = errno;
-    record_line_end(&recording->line);
-    complain("the bus has failed: %s", strerror(error));
+    complain("the bus has failed: %s", strerror(errno));
     return false;
 }
 
@@ -199,6 +208,16 @@ static bool step(struct recording *recording, int signals, int64_t until_ns)
     return true;
 }
 
+static void show_progress(const struct recording *recording)
+{
+    char text[3][NUMBER_TEXT_MAX];
+    if (stderr_ready())
+        progress_show("%s messages, %s MB, %s lost", number_grouped(recording->messages, text[0]),
+                      number_grouped(log_parts_written(&recording->parts) / 1000000, text[1]),
+                      number_grouped((int64_t) fmb_client_raw_bus_counts(recording->client).dropped,
+                                     text[2]));
+}
+
 /* Records until the recording is complete, the log fails, or a signal arrives. Returns false if the
  * bus has failed, which was reported. */
 static bool run(struct recording *recording, int signals)
@@ -212,14 +231,12 @@ static bool run(struct recording *recording, int signals)
         request_bodies(recording, now_ns);
         const int64_t due_ns = record_bodies_due(recording->bodies);
         if (!step(recording, signals, clock_earlier(clock_earlier(due_ns, end_ns), line_at_ns)))
-            return bus_failed(recording);
+            return bus_failed();
         if (poll(&signal, 1, 0) > 0)
             return true;
         now_ns = clock_ns();
         if (now_ns >= line_at_ns) {
-            record_line_show(&recording->line, recording->events,
-                             log_parts_written(&recording->parts),
-                             (int64_t) fmb_client_raw_bus_counts(recording->client).dropped);
+            show_progress(recording);
             line_at_ns = now_ns + line_ns;
         }
     }
@@ -236,7 +253,7 @@ static bool receive_remaining(struct recording *recording)
     while (!recording->enough && !recording->error && recording->utime <= begin_utime &&
            now_ns < until_ns) {
         if (!step(recording, -1, until_ns))
-            return bus_failed(recording);
+            return bus_failed();
         const uint64_t before = received;
         received = fmb_client_raw_bus_counts(recording->client).received;
         now_ns = clock_ns();
@@ -246,38 +263,114 @@ static bool receive_remaining(struct recording *recording)
     return true;
 }
 
+/* ---- The report at the end ------------------------------------------------------------------- */
+
+static void write_files(struct json_writer *json, const struct log_parts *parts)
+{
+    json_begin(json, "files", '[');
+    if (parts->options.part_bytes == 0)
+        json_string(json, NULL, parts->options.path);
+    else
+        for (long number = parts->first; number <= parts->number; number++) {
+            char *name = log_parts_name(parts->options.path, number);
+            json_string(json, NULL, name ? name : "");
+            free(name);
+        }
+    json_end(json, ']');
+}
+
+static void report_json(const struct recording *recording)
+{
+    struct json_writer json = json_object(stdout);
+    write_files(&json, &recording->parts);
+    json_integer(&json, "events", recording->events);
+    json_integer(&json, "bytes", recording->bytes);
+    json_number(&json, "seconds", round(recording->seconds * 1e3) / 1e3);
+    json_begin(&json, "received", '{');
+    for (int kind = 0; kind < LOG_KINDS; kind++)
+        json_integer(&json, log_kind_name[kind].json, recording->received[kind]);
+    json_end(&json, '}');
+    json_integer(&json, "malformed", recording->malformed);
+    json_integer(&json, "lost", (int64_t) recording->of_bus.dropped);
+    json_integer(&json, "skipped", recording->of_bodies.skipped);
+    json_integer(&json, "defined_bodies", recording->of_bodies.defined);
+    json_integer(&json, "dropped_bodies", recording->of_bodies.dropped);
+    json_integer(&json, "unresolved_handles", recording->of_bodies.unresolved);
+    json_integer(&json, "receive_buffer", recording->of_bus.receive_buffer);
+    json_object_end(&json);
+}
+
+static void print_where(const struct log_parts *parts)
+{
+    const char *path = parts->options.path;
+    escape_text(stdout, path);
+    if (parts->options.part_bytes == 0)
+        printf(": ");
+    else if (parts->first == parts->number)
+        printf(".%03ld: ", parts->number);
+    else
+        printf(".%03ld to .%03ld: ", parts->first, parts->number);
+}
+
+static void report_text(const struct recording *recording)
+{
+    char events[NUMBER_TEXT_MAX], bytes[NUMBER_TEXT_MAX];
+    print_where(&recording->parts);
+    printf("%s messages in %.1f s, %s bytes\n", number_grouped(recording->events, events),
+           recording->seconds, number_grouped(recording->bytes, bytes));
+    for (int kind = 0; kind < LOG_KINDS; kind++)
+        if (recording->received[kind] > 0 || kind <= LOG_STATUS)
+            number_print(log_kind_name[kind].text, recording->received[kind]);
+    if (recording->malformed > 0)
+        number_print("malformed", recording->malformed);
+    if (recording->of_bodies.defined > 0)
+        number_print("bodies defined", recording->of_bodies.defined);
+    number_print("lost", (int64_t) recording->of_bus.dropped);
+}
+
+/* Reports what is missing, if anything, in one line. */
+static void report_losses(const struct recording *recording)
+{
+    char text[4][NUMBER_TEXT_MAX];
+    const struct record_bodies_counts *bodies = &recording->of_bodies;
+    if (recording->of_bus.dropped > 0 || bodies->skipped > 0 || bodies->unresolved > 0)
+        complain(
+            "lost: %s datagrams that the kernel dropped (receive buffer of %s bytes), %s queries "
+            "by their sequence numbers, bodies of %s handles",
+            number_grouped((int64_t) recording->of_bus.dropped, text[0]),
+            number_grouped(recording->of_bus.receive_buffer, text[1]),
+            number_grouped(bodies->skipped, text[2]), number_grouped(bodies->unresolved, text[3]));
+}
+
 /* ---- Begin and end --------------------------------------------------------------------------- */
 
 /* Reports a bus without a service: neither a heartbeat, which is sent once a second, nor a result
  * was received. */
 static void report_no_service(const struct recording *recording)
 {
-    const int64_t *received = recording->recorded.received;
+    const int64_t *received = recording->received;
     if (received[LOG_STATUS] + received[LOG_PAIR_RESULT] + received[LOG_SCENE_RESULT] > 0)
         return;
     complain("no heartbeat on channel %sFMB_STATUS of %s within %.1f s", recording->bus.prefix,
-             args_bus_name(&recording->bus), recording->recorded.seconds);
+             args_bus_name(&recording->bus), recording->seconds);
     args_advise_service(&recording->bus, "");
 }
 
 static int end_of_recording(struct recording *recording, bool good)
 {
-    struct recorded *recorded = &recording->recorded;
     const int64_t end_ns = clock_ns();
     const int error = log_parts_finish(&recording->parts);
     if (!recording->error)
         recording->error = error;
-    recorded->bytes = log_parts_written(&recording->parts);
-    recorded->seconds = 1e-9 * (double) (end_ns - recording->begin_ns);
-    recorded->bodies = record_bodies_counts(recording->bodies);
-    recorded->bus = fmb_client_raw_bus_counts(recording->client);
-    record_line_end(&recording->line);
+    recording->bytes = log_parts_written(&recording->parts);
+    recording->seconds = 1e-9 * (double) (end_ns - recording->begin_ns);
+    recording->of_bodies = record_bodies_counts(recording->bodies);
+    recording->of_bus = fmb_client_raw_bus_counts(recording->client);
     if (recording->error)
         output_complain(recording->parts.name, recording->error);
-    record_report_losses(recorded);
+    report_losses(recording);
     report_no_service(recording);
-    (recording->options->json ? record_report_json : record_report_text)(recorded,
-                                                                         &recording->parts);
+    (recording->options->json ? report_json : report_text)(recording);
     return output_flush() && !recording->error && good ? ARGS_ANSWERED : ARGS_FAILED;
 }
 
@@ -289,7 +382,9 @@ static int record(struct recording *recording, int signals)
     recording->begin_ns = clock_ns();
     complain("recording to %s, with a receive buffer of %ld bytes", recording->parts.name,
              fmb_client_raw_bus_counts(recording->client).receive_buffer);
+    progress_begin("messages");
     const bool good = run(recording, signals) && receive_remaining(recording);
+    progress_end();
     const int code = end_of_recording(recording, good);
     record_bodies_close(recording->bodies);
     return code;

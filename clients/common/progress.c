@@ -3,6 +3,7 @@
 #include "clock.h"
 #include "number.h"
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -35,16 +36,28 @@ void progress_begin(const char *unit)
     line.next_at = clock_ns() + first_after_ns;
 }
 
+void progress_show(const char *format, ...)
+{
+    va_list list;
+    if (!line.unit)
+        return;
+    line.shown = true;
+    fputs("\rfmb: ", stderr);
+    va_start(list, format);
+    vfprintf(stderr, format, list);
+    va_end(list);
+    fputs("\033[K", stderr);
+    fflush(stderr);
+}
+
 void progress_to(int64_t done, int64_t total)
 {
     char done_text[NUMBER_TEXT_MAX], total_text[NUMBER_TEXT_MAX];
     if (!line.unit || ++line.steps % STEPS != 0 || clock_ns() < line.next_at)
         return;
     line.next_at = clock_ns() + every_ns;
-    line.shown = true;
-    fprintf(stderr, "\rfmb: %s of %s %s", number_grouped(done, done_text),
-            number_grouped(total, total_text), line.unit);
-    fflush(stderr);
+    progress_show("%s of %s %s", number_grouped(done, done_text), number_grouped(total, total_text),
+                  line.unit);
 }
 
 void progress_clear(void)

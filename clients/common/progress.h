@@ -15,6 +15,9 @@ void progress_begin(const char *unit);
  * second. Has no effect if no count has begun. */
 void progress_to(int64_t done, int64_t total);
 
+/* Shows this text at once, if a count has begun. */
+void progress_show(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 /* Clears the line. complain() does so too; the line may appear again after that. */
 void progress_clear(void);
 

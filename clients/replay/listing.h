@@ -1,7 +1,7 @@
 /* The differences that a replay lists, in whatever order they are added: first those of scenes,
  * statuses and verdicts, then those of numbers and certificates; each sorted by the positions of
  * their queries, and those of one query in the order of arrival. Differences beyond a limit are
- * counted. Each kept takes some 1,200 bytes; at most twice the limit are kept. */
+ * counted. Each kept takes some 1,200 bytes. */
 #ifndef LISTING_H
 #define LISTING_H
 
@@ -9,7 +9,7 @@
 
 struct listing;
 
-/* Most bytes kept of a certificate, final 0 included. */
+/* Most bytes kept of a certificate. */
 enum { LISTING_CERTIFICATE_MAX = 200 };
 
 /* limit: most differences kept, from 0. Exits with status 1 if memory is exhausted. */

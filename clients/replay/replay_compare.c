@@ -176,37 +176,26 @@ static struct exchange exchange_of(struct replay *replay, const struct logged_re
         .query = &replay->compared, .result = result, .names = replay->options->names};
 }
 
-static void compare_unrecorded(struct replay *replay, const struct match_item *query,
-                               const struct new_result *answered)
-{
-    struct exchange then = exchange_of(replay, NULL), now = exchange_of(replay, &replay->now);
-    const enum replay_outcome outcome = answered->not_held ? REPLAY_NOT_HELD : REPLAY_UNRECORDED;
-    if ((replay->options->page || replay->options->labels) && !read_compared(replay, query))
-        return;
-    count(replay, query, outcome, 0);
-    if (!replay->options->page)
-        return;
-    read_new(replay, (enum log_kind) query->key.kind, answered);
-    add_to_page(replay, query, &then, &now, outcome);
-}
-
-/* Compares a result that was read, and so its own query, with the new one. same_bytes: of both
- * results. */
+/* Compares the new result with the recorded one, if there is one, which was read, and so was its
+ * own query. size: of the recorded result; same_bytes: of both results. */
 static void compare_read(struct replay *replay, const struct match_item *query,
                          const struct new_result *answered, uint32_t size, bool same_bytes)
 {
     const enum log_kind kind = (enum log_kind) query->key.kind;
     const struct match_item *result = query->other;
-    struct exchange then = exchange_of(replay, &replay->then),
+    struct exchange then = exchange_of(replay, result ? &replay->then : NULL),
                     now = exchange_of(replay, &replay->now);
-    if (result->has_own) {
+    const bool has_own = result && result->has_own;
+    if (has_own) {
         then.query = &replay->golden_query;
         then.names = replay->golden_names;
     }
-    then.by_order = !result->has_own && (result->by_order || result->key.utime != query->key.utime);
+    then.by_order =
+        result && !has_own && (result->by_order || result->key.utime != query->key.utime);
     if (!read_compared(replay, query) ||
-        !is_unchanged(replay, result,
-                      logged_result_read(&replay->then, kind, replay->result_bytes, size)))
+        (result &&
+         !is_unchanged(replay, result,
+                       logged_result_read(&replay->then, kind, replay->result_bytes, size))))
         return;
     read_new(replay, kind, answered);
     if (replay->options->compare.tolerance > 0)
@@ -214,10 +203,11 @@ static void compare_read(struct replay *replay, const struct match_item *query,
     replay->item = query;
     const enum replay_outcome outcome =
         answered->not_held ? REPLAY_NOT_HELD
-        : same_bytes && !result->has_own
+        : !result          ? REPLAY_UNRECORDED
+        : same_bytes && !has_own
             ? REPLAY_SAME
             : compare_exchanges(&replay->options->compare, &then, &now, on_difference, replay);
-    count(replay, query, outcome, replay->then.head.compute_ns);
+    count(replay, query, outcome, result ? replay->then.head.compute_ns : 0);
     if (replay->options->page)
         add_to_page(replay, query, &then, &now, outcome);
 }
@@ -225,25 +215,23 @@ static void compare_read(struct replay *replay, const struct match_item *query,
 void replay_compare(struct replay *replay, const struct match_item *query,
                     const struct new_result *answered)
 {
-    const enum log_kind kind = (enum log_kind) query->key.kind;
     const unsigned char *then = replay->result_bytes;
-    uint32_t size;
+    const struct match_item *result = query->other;
+    uint32_t size = 0;
     replay->label[0] = replay->note[0] = 0;
-    if (!query->other) {
-        compare_unrecorded(replay, query, answered);
-        return;
-    }
     /* A query comes before its result: so the golden log is read forwards. */
-    if ((query->other->has_own && !read_golden_query(replay, query->other)) ||
-        !read_again(replay, rereader_of(replay, query->other), &query->other->place,
-                    replay->result_bytes, &size))
+    if (result && ((result->has_own && !read_golden_query(replay, result)) ||
+                   !read_again(replay, rereader_of(replay, result), &result->place,
+                               replay->result_bytes, &size)))
         return;
-    const bool same = compare_bytes_same(kind, then, size, answered->bytes, answered->size);
-    /* Results of both types end with compute_ns. */
-    if (same && !replay->options->page && !replay->options->labels && !query->other->has_own)
+    const bool same = result && compare_bytes_same((enum log_kind) query->key.kind, then, size,
+                                                   answered->bytes, answered->size);
+    if (replay->options->page || replay->options->labels || (result && (!same || result->has_own)))
+        compare_read(replay, query, answered, size, same);
+    else if (same) /* results of both types end with compute_ns */
         count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
     else
-        compare_read(replay, query, answered, size, same);
+        count(replay, query, answered->not_held ? REPLAY_NOT_HELD : REPLAY_UNRECORDED, 0);
 }
 
 /* ---- Second results, and results without a query ---- */

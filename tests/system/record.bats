@@ -405,7 +405,7 @@ hulls() {
     jq -e '.same >= 1 and .different == 0' "$BATS_TEST_TMPDIR/replay"
     "$FMB" log cut -o "$BATS_TEST_TMPDIR/cut" --channel 'FMB_SCENE_.*' "$log"
     "$FMB" replay "$BATS_TEST_TMPDIR/cut"
-    "$FMB" log scene --event 1 "$BATS_TEST_TMPDIR/cut" 2> "$messages" |
+    "$FMB" log scene --event 0 "$BATS_TEST_TMPDIR/cut" 2> "$messages" |
         "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
 }
 

@@ -439,8 +439,8 @@ static void counts_beyond_the_file_are_refused(void **state)
         "element vertex 4294967294\nproperty char x\nproperty char y\nproperty char z\n",
         "element face 4294967294\nproperty list uchar uchar vertex_indices\n",
         "element a 4294967294\nproperty list uchar uchar b\n",
-        "element vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
-        "element face 1000000000\nproperty list double double vertex_index\n",
+        ("element vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
+         "element face 1000000000\nproperty list double double vertex_index\n"),
     };
     for (size_t f = 0; f < 3; f++)
         for (size_t i = 0; i < COUNT(promises); i++) {
