@@ -38,36 +38,18 @@ struct status {
 
 /* ---- Printing ---- */
 
-/* A status, as a counter of results names it after "result_". */
-struct counted_status {
-    const char *name;
-    int number;
-};
-
-/* Returns NULL if the counter does not count results of a status. */
-static const struct counted_status *status_of(const struct fmb_client_counter *counter)
-{
-    static const char prefix[] = "result_";
-    static const struct counted_status statuses[] = {
-#define X(name, number, text) {#name, number},
-        FMB_STATUS_MAP(X)
-#undef X
-    };
-    for (size_t i = 0; i < FMB_STATUS_COUNT; i++)
-        if (strncmp(counter->name, prefix, strlen(prefix)) == 0 &&
-            strcmp(counter->name + strlen(prefix), statuses[i].name) == 0)
-            return &statuses[i];
-    return NULL;
-}
+/* What the counters of results begin with, before the name of the status. */
+#define RESULT "result_"
 
 /* results: the counters of results, by the names of their statuses; else the others. */
 static void write_counters(struct json_writer *json, const struct fmb_client_heartbeat *status,
                            bool results)
 {
     for (size_t i = 0; i < status->counter_count; i++) {
-        const struct counted_status *of = status_of(&status->counters[i]);
-        if ((of != NULL) == results)
-            json_integer(json, of ? of->name : status->counters[i].name, status->counters[i].value);
+        const char *name = status->counters[i].name;
+        const bool result = strncmp(name, RESULT, strlen(RESULT)) == 0;
+        if (result == results)
+            json_integer(json, name + (result ? strlen(RESULT) : 0), status->counters[i].value);
     }
 }
 
@@ -98,11 +80,15 @@ static void print_duration(int64_t microseconds)
 
 static void print_refusals(const struct fmb_client_heartbeat *status)
 {
-    for (size_t i = 0; i < status->counter_count; i++) {
-        const struct counted_status *of = status_of(&status->counters[i]);
-        if (of && of->number != FMB_OK && status->counters[i].value > 0)
-            printf("  %-16s %15" PRId64 "  %s\n", "  refused", status->counters[i].value,
-                   fmb_status_text(of->number));
+    static const char *const counters[] = {
+#define X(name, number, text) [number] = RESULT #name,
+        FMB_STATUS_MAP(X)
+#undef X
+    };
+    for (int i = FMB_OK + 1; i < FMB_STATUS_COUNT; i++) {
+        const int64_t refused = fmb_client_get_counter(status, counters[i]);
+        if (refused > 0)
+            printf("  %-16s %15" PRId64 "  %s\n", "  refused", refused, fmb_status_text(i));
     }
 }
 
