@@ -1,5 +1,8 @@
 #include "client.h"
 
+#include "client_scene.h"
+#include "clock.h"
+#include "fmb_client_raw.h"
 #include "process.h"
 #include "wire_type.h"
 
@@ -48,8 +51,9 @@ static void take(struct fmb_client *client, const struct bus_message *message,
 }
 
 static const char *on_result(struct fmb_client *client, const struct bus_message *message,
-                             bool is_pair)
+                             enum fmb_client_kind kind)
 {
+    const bool is_pair = kind == FMB_CLIENT_PAIR;
     struct query_header header;
     const uint32_t size = (uint32_t) message->size;
     const char *error = (is_pair ? wire_read_pair_result_header : wire_read_scene_result_header)(
@@ -59,18 +63,8 @@ static const char *on_result(struct fmb_client *client, const struct bus_message
     error = is_pair ? wire_read_pair_result(message->bytes, size, &client->received.pair)
                     : wire_read_scene_result(message->bytes, size, &client->received.scene);
     if (!error)
-        take(client, message, is_pair ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE);
+        take(client, message, kind);
     return error;
-}
-
-static const char *on_pair(struct fmb_client *client, const struct bus_message *message)
-{
-    return on_result(client, message, true);
-}
-
-static const char *on_scene(struct fmb_client *client, const struct bus_message *message)
-{
-    return on_result(client, message, false);
 }
 
 static const char *on_definition(struct fmb_client *client, const struct bus_message *message)
@@ -111,14 +105,11 @@ int64_t fmb_client_get_counter(const struct fmb_client_heartbeat *heartbeat, con
 
 /* ---- The bus ---- */
 
-static const struct {
-    const char *name;
-    const char *(*read)(struct fmb_client *client, const struct bus_message *message);
-} channels[CLIENT_CHANNELS] = {
-    [FMB_CLIENT_PAIR] = {WIRE_PAIR_RESULT, on_pair},
-    [FMB_CLIENT_SCENE] = {WIRE_SCENE_RESULT, on_scene},
-    [FMB_CLIENT_DEFINITION] = {WIRE_DEFINITION, on_definition},
-    [CLIENT_STATUS] = {WIRE_STATUS, on_status},
+static const char *const channels[CLIENT_CHANNELS] = {
+    [FMB_CLIENT_PAIR] = WIRE_PAIR_RESULT,
+    [FMB_CLIENT_SCENE] = WIRE_SCENE_RESULT,
+    [FMB_CLIENT_DEFINITION] = WIRE_DEFINITION,
+    [CLIENT_STATUS] = WIRE_STATUS,
 };
 
 static void on_message(void *user, const struct bus_message *message)
@@ -128,7 +119,10 @@ static void on_message(void *user, const struct bus_message *message)
         client->tap(client->tap_user, message);
     if (message->listener >= client->listener_count) /* only the tap receives it */
         return;
-    const char *error = channels[client->channel[message->listener]].read(client, message);
+    const int channel = client->channel[message->listener];
+    const char *error = channel == CLIENT_STATUS           ? on_status(client, message)
+                        : channel == FMB_CLIENT_DEFINITION ? on_definition(client, message)
+                                                           : on_result(client, message, channel);
     if (!error)
         return;
     client->requests.counts.malformed++;
@@ -136,13 +130,14 @@ static void on_message(void *user, const struct bus_message *message)
         client->watcher.malformed(client->watcher.user, error);
 }
 
-bool client_listen(struct fmb_client *client, int channel)
+/* Receives a channel from now on. Returns false if the bus cannot; client->why is the reason. */
+static bool client_listen(struct fmb_client *client, int channel)
 {
     char name[BUS_CHANNEL_MAX];
     for (int i = 0; i < client->listener_count; i++)
         if (client->channel[i] == channel)
             return true;
-    bus_channel(name, client->prefix, channels[channel].name);
+    bus_channel(name, client->prefix, channels[channel]);
     if (!bus_listen(client->bus, name, client->why))
         return false;
     client->channel[client->listener_count++] = channel;
@@ -219,6 +214,82 @@ int fmb_client_handle(struct fmb_client *client, double timeout)
     return client->failed ? FMB_CLIENT_NO_BUS : received;
 }
 
+void fmb_client_get_counts(const struct fmb_client *client, struct fmb_client_counts *out)
+{
+    *out = client->requests.counts;
+}
+
+/* ---- Queries ---- */
+
+const char *fmb_client_why(const struct fmb_client *client)
+{
+    return client->why;
+}
+
+/* Sets the reason of a status of the whole scene. Returns the status. */
+static int fail(struct fmb_client *client, int status)
+{
+    snprintf(client->why, sizeof client->why, "%s", fmb_client_status_text(status));
+    return status;
+}
+
+/* single: each pair is a separate query. */
+static int query(struct fmb_client *client, const struct fmb_scene *scene, bool single,
+                 fmb_client_sink *sink, void *user)
+{
+    if (client->inside)
+        return FMB_CLIENT_INSIDE;
+    int status = client_scene_check(scene, client->why);
+    if (status != FMB_OK)
+        return status;
+    if (client->failed || !client_listen(client, single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE))
+        return fail(client, FMB_CLIENT_NO_BUS);
+    client->inside = true;
+    status = scene_run(&client->run, scene, single, sink, user);
+    client->inside = false;
+    return status == FMB_OK ? status : fail(client, status);
+}
+
+int fmb_client_query(struct fmb_client *client, const struct fmb_scene *scene,
+                     fmb_client_sink *sink, void *user)
+{
+    return query(client, scene, scene->want & FMB_WANT_CERTIFICATE, sink, user);
+}
+
+/* The sink of fmb_client_query_pair(): copies the answer and its texts into the client. */
+static void keep_answer(void *user, const struct fmb_client_answer *answer)
+{
+    struct fmb_client *client = user;
+    client->answer = *answer;
+    snprintf(client->text, sizeof client->text, "%s", answer->text);
+    client->answer.text = client->text;
+    if (answer->certificate)
+        client->answer.certificate = strcpy(client->certificate, answer->certificate);
+}
+
+int fmb_client_query_pair(struct fmb_client *client, const struct fmb_placement pair[2],
+                          double duration, unsigned want, struct fmb_client_answer *out)
+{
+    struct fmb_placement placement[2] = {pair[0], pair[1]};
+    placement[0].group = placement[1].group = 0;
+    const bool ends = pair[0].end_count || pair[1].end_count;
+    const struct fmb_scene scene = {.placements = placement,
+                                    .placement_count = 2,
+                                    .duration = duration,
+                                    .instant = duration == 0 && !ends,
+                                    .want = want};
+    *out = (struct fmb_client_answer){.b = 1, .text = ""};
+    out->status = query(client, &scene, true, keep_answer, client);
+    if (out->status == FMB_OK)
+        *out = client->answer;
+    else
+        out->text =
+            out->status == FMB_CLIENT_INSIDE ? fmb_client_status_text(out->status) : client->why;
+    return out->status;
+}
+
+/* ---- Raw requests ---- */
+
 int64_t fmb_client_raw_id(const struct fmb_client *client)
 {
     return client->requests.client_id;
@@ -229,9 +300,51 @@ struct bus_counts fmb_client_raw_bus_counts(const struct fmb_client *client)
     return bus_counts(client->bus);
 }
 
-void fmb_client_get_counts(const struct fmb_client *client, struct fmb_client_counts *out)
+bool fmb_client_raw_ready(const struct fmb_client *client, size_t bytes)
 {
-    *out = client->requests.counts;
+    return requests_ready(&client->requests, bytes);
+}
+
+/* The handler of raw requests. */
+static enum request_taken deliver_raw(void *user, struct request *request,
+                                      const struct request_result *result)
+{
+    const struct fmb_client_raw_result out = {result->status, result->bytes, result->size,
+                                              request->query, request->size};
+    request->raw_sink(user, &out);
+    return REQUEST_COMPLETE;
+}
+
+int fmb_client_raw_send(struct fmb_client *client, enum fmb_client_kind kind,
+                        const unsigned char *message, size_t size, size_t bytes,
+                        fmb_client_raw_sink *sink, void *user)
+{
+    if (client->inside)
+        return FMB_CLIENT_INSIDE;
+    if (size > QUERY_BYTES_MAX)
+        return FMB_OVER_LIMIT;
+    if (size < REQUEST_IDS_END)
+        return FMB_WRONG_COUNT;
+    if (client->failed || !client_listen(client, (int) kind))
+        return FMB_CLIENT_NO_BUS;
+    client->inside = true;
+    struct request *request = request_begin(&client->requests, kind, bytes, deliver_raw, user);
+    request->raw_sink = sink;
+    request->size = size;
+    memcpy(request->query, message, size);
+    request_send(&client->requests, request);
+    client->inside = false;
+    return FMB_OK;
+}
+
+int fmb_client_raw_step(struct fmb_client *client, int other_fd, double timeout)
+{
+    if (client->inside)
+        return FMB_CLIENT_INSIDE;
+    client->inside = true;
+    requests_step(&client->requests, other_fd, clock_ns() + (int64_t) (1e9 * timeout));
+    client->inside = false;
+    return client->failed ? FMB_CLIENT_NO_BUS : client->requests.count;
 }
 
 /* ---- Opening and closing ---- */

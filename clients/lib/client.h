@@ -37,7 +37,4 @@ struct fmb_client {
     } received;
 };
 
-/* Receives a channel from now on. Returns false if the bus cannot; client->why is the reason. */
-bool client_listen(struct fmb_client *client, int channel);
-
 #endif
