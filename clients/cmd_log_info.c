@@ -382,18 +382,13 @@ static int report(bool json, const struct info *info)
 static int run_info(bool json, const char *path)
 {
     char why[LOG_WHY_MAX];
-    struct row *row, *next;
     struct log_reader *reader = log_open(path, why);
     if (!reader)
         return refuse(path, why);
     struct info info = {.path = path, .size = log_size(reader), .names = body_names_open()};
     read_all(reader, &info);
     const int code = report(json, &info);
-    HASH_ITER(hh, info.rows, row, next)
-    {
-        HASH_DELETE(hh, info.rows, row);
-        free(row);
-    }
+    HASH_FREE(info.rows);
     body_names_close(info.names);
     log_close(reader);
     return code;

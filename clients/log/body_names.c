@@ -18,14 +18,9 @@ struct body_names *body_names_open(void)
 
 void body_names_close(struct body_names *names)
 {
-    struct body_name *name, *next;
     if (!names)
         return;
-    HASH_ITER(hh, names->table, name, next)
-    {
-        HASH_DELETE(hh, names->table, name);
-        free(name);
-    }
+    HASH_FREE(names->table);
     free(names);
 }
 

@@ -30,16 +30,6 @@ struct weld {
     struct welded *vertex;    /* owned: hash table by coordinates; NULL: empty */
 };
 
-static void weld_close(struct weld *weld)
-{
-    struct welded *at = weld->vertex, *next;
-    HASH_CLEAR(hh, weld->vertex);
-    for (; at; at = next) {
-        next = at->hh.next;
-        free(at);
-    }
-}
-
 static bool weld_vertex(struct weld *weld, const double position[3], unsigned *index)
 {
     /* -0 + 0 is 0; every other number plus 0 is unchanged */
@@ -156,7 +146,7 @@ bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
         good = read_solid(&weld);
         source->at = mesh_skip_spaces(source->at);
     } while (good && source->at < source->end);
-    weld_close(&weld);
+    HASH_FREE(weld.vertex);
     return good;
 }
 
@@ -238,6 +228,6 @@ bool mesh_stl_binary(struct mesh_source *source, struct mesh *out)
     if (!mesh_is_stl_binary(source))
         return refuse_size(source);
     const bool good = read_facets(&weld);
-    weld_close(&weld);
+    HASH_FREE(weld.vertex);
     return good;
 }

@@ -126,18 +126,13 @@ struct page *page_open(const struct page_options *options)
 
 void page_close(struct page *page)
 {
-    struct element *at, *next;
     if (!page)
         return;
     text_close(&page->data);
     text_close(&page->shape);
     for (int list = 0; list < LISTS; list++)
         text_close(&page->list[list]);
-    HASH_ITER(hh, page->shapes, at, next)
-    {
-        HASH_DEL(page->shapes, at);
-        free(at);
-    }
+    HASH_FREE(page->shapes);
     for (int rank = 0; rank < RANK_COUNT; rank++)
         text_close(&page->pairs[rank]);
     free(page->body);

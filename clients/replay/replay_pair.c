@@ -225,12 +225,7 @@ void replay_pair_clients(struct replay *replay)
     note_matched(&pairing);
     pair_queries(&pairing);
     rename_results(&pairing);
-    struct pair_entry *entry, *next;
-    HASH_ITER(hh, pairing.table, entry, next)
-    {
-        HASH_DELETE(hh, pairing.table, entry);
-        free(entry);
-    }
+    HASH_FREE(pairing.table);
     match_all(&replay->match);
     report_left_over(replay, &replay->match);
     report_left_over(replay, &replay->golden_queries);
