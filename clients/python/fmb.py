@@ -1044,25 +1044,6 @@ class Scene(_Handle):
             raise BusError(f"client: {status_text(worst)}{_advice(worst, client)}", worst)
         return answers
 
-    def stream(self, duration: float, positions: Optional[Iterable[Array]] = None,
-               orientations: Optional[Iterable[Array]] = None,
-               velocities: Optional[Iterable[Array]] = None,
-               end_positions: Optional[Iterable[Array]] = None,
-               end_orientations: Optional[Iterable[Array]] = None, **options: Any) -> Iterator[Answers]:
-        """Yields the answers of one scene after the other. positions to end_orientations are as for place(),
-        with an additional first axis, the scenes; or they are iterables of such arrays. options: as for
-        decide()."""
-        given = {name: _iterate(name, values) for name, values in (
-            ("positions", positions), ("orientations", orientations), ("velocities", velocities),
-            ("end_positions", end_positions), ("end_orientations", end_orientations))
-            if values is not None}
-        for poses in itertools.zip_longest(*given.values()):
-            for name, pose in zip(given, poses):
-                if pose is None:
-                    raise ValueError(f"{name}: fewer scenes than the others")
-            self.place(**dict(zip(given, poses)))
-            yield self.decide(duration, **options)
-
 
 # ---- Robots ----
 

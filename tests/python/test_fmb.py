@@ -266,19 +266,6 @@ class Answers(unittest.TestCase):
         with self.assertRaisesRegex(fmb.Error, r"^pairs\[1\]: "):
             scene.decide(0, pairs=[(0, 1), (2, 0)], client=self.client)
 
-    def test_a_stream_yields_one_scene_after_the_other(self):
-        cube = fmb.box([1, 1, 1])
-        scene = fmb.Scene([cube, cube])
-        steps = [[[0, 0, 0], [x, 0, 0]] for x in (0.5, 1.0, 1.5)]
-        verdicts = [answers[0].verdict for answers in
-                    scene.stream(0, steps, pairs=[(0, 1)], client=self.client)]
-        self.assertEqual(verdicts, [fmb.OVERLAPPING, fmb.TOUCHING, fmb.SEPARATED])
-        falling = scene.stream(1, velocities=[[[0, 0, 0], [v, 0, 0]] for v in (0.0, -1.0)],
-                               pairs=[(0, 1)], contacts=True, client=self.client)
-        self.assertEqual([answers[0].contact for answers in falling], [None, (0.5, 1)])
-        with self.assertRaisesRegex(ValueError, "^velocities: "):
-            list(scene.stream(0, steps, velocities=[], client=self.client))
-
     def test_bodies_move_and_turn_to_an_end(self):
         draw = random.Random(3)
         for dim in (2, 3):
@@ -426,7 +413,6 @@ class Bus(Answers):
         with fmb.Client(prefix="none", timeout=0.01, tries=2) as client:
             for name, call in (("client", lambda: scene.decide(0, client=client)),
                                ("client", lambda: scene.decide(0, pairs=[(1, 2)], client=client)),
-                               ("client", lambda: list(scene.stream(0, [[[0, 0]] * 3], client=client))),
                                ("pair", lambda: scene.pair(0, 1, 0, client=client))):
                 with self.assertRaisesRegex(fmb.BusError, f"^{name}: .*no fmbd.*: start one with 'fmbd .*--prefix none &'$") as caught:
                     call()
@@ -548,11 +534,6 @@ class Arrays(unittest.TestCase):
         bounds = [fmb.hull(corners).dim for corners in answers.boxes[1:]]
         self.assertEqual(bounds, [3])
 
-    def test_a_stream_takes_an_array_of_scenes(self):
-        steps = memoryview(array("d", [0, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0, 0, 2, 0, 0, 9, 0, 0])).cast("B")
-        self.assertEqual([len(answers) for answers in self.scene.stream(0, steps.cast("d", (2, 3, 3)))],
-                         [1, 0])
-
     def test_what_bodies_do_not_have_is_refused(self):
         box = fmb.box([1, 1, 1])
         for error, start, call in (
@@ -665,7 +646,6 @@ class Arrays(unittest.TestCase):
                 (TypeError, "label", lambda: scene.decide(0, label=b"x")),
                 (fmb.Error, "label", lambda: scene.decide(0, label="x" * 65)),
                 (fmb.Error, "label", lambda: scene.decide(0, label="\n", pairs=[[0, 1]])),
-                (TypeError, "positions", lambda: list(scene.stream(0, 5))),
                 (fmb.Error, "pair", lambda: scene.pair(0, 0, 1)),
                 (fmb.Error, "pair: there is no body 3", lambda: scene.pair(0, 3, 1)),
                 (fmb.Error, "pair", lambda: scene.pair(0, 1, -1)),
@@ -756,8 +736,6 @@ class Arrays(unittest.TestCase):
         ids = numpy.array([5, 6, 7], "u2")
         fmb.Scene([fmb.box(whole[0])] * 3, positions=good.astype("f4"), orientations=numpy.eye(3, 4, dtype="i1"),
                   velocities=numpy.asfortranarray(good), ids=ids, groups=ids[::-1])
-        steps = numpy.float32([good, good * 2]).transpose(0, 1, 2)
-        self.assertEqual([len(answers) for answers in scene.stream(0, steps)], [1, 0])
         for error, start, call in (
                 (TypeError, "positions", lambda: scene.place(good.astype(object))),
                 (TypeError, "positions", lambda: scene.place(good.astype(complex))),
