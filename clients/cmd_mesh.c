@@ -13,7 +13,6 @@
 
 #include <float.h>
 #include <limits.h>
-#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,24 +75,9 @@ struct mesh_options {
 
 /* ---- Options --------------------------------------------------------------------------------- */
 
-/* Reads "X", "X,Y" or "X,Y,Z", finite numbers. Returns how many; 0: the text is anything else. */
-static int read_numbers(const char *text, double out[3])
-{
-    for (int count = 0; count < 3; text++) {
-        char *end;
-        out[count] = strtod(text, &end);
-        if (end == text || !isfinite(out[count++]))
-            return 0;
-        if (*end != ',')
-            return *end ? 0 : count;
-        text = end;
-    }
-    return 0;
-}
-
 static bool take_vector(const struct args *args, double out[3])
 {
-    return read_numbers(optarg, out) == 3 ||
+    return args_numbers(optarg, 3, out) == 3 ||
            args_error(args, "--%s: expected three numbers X,Y,Z, found '%s'", args->option, optarg);
 }
 
@@ -119,7 +103,7 @@ static bool add_step(const struct args *args, const struct mesh_step *step, stru
 static bool take_scale(const struct args *args, void *placed)
 {
     struct mesh_step step = {.kind = MESH_SCALE};
-    const int count = read_numbers(optarg, step.number);
+    const int count = args_numbers(optarg, 3, step.number);
     if (count == 1)
         step.number[1] = step.number[2] = step.number[0];
     else if (count != 3)
@@ -135,7 +119,7 @@ static bool is_axis(char letter)
 static bool take_rotate(const struct args *args, void *placed)
 {
     struct mesh_step step = {.kind = MESH_ROTATE, .axis = *optarg - 'x'};
-    if (!is_axis(*optarg) || optarg[1] != ',' || read_numbers(optarg + 2, step.number) != 1)
+    if (!is_axis(*optarg) || optarg[1] != ',' || args_numbers(optarg + 2, 3, step.number) != 1)
         return args_error(args, "--rotate: expected an axis and degrees, such as z,90, found '%s'",
                           optarg);
     return add_step(args, &step, placed);

@@ -3,6 +3,7 @@
 #include "complain.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,6 +38,20 @@ bool args_integer(const struct args *args, long low, long high, long *out)
         return true;
     return args_error(args, "--%s: expected an integer from %ld to %ld, found '%s'", args->option,
                       low, high, optarg);
+}
+
+int args_numbers(const char *text, int most, double out[])
+{
+    for (int count = 0; count < most; text++) {
+        char *end;
+        out[count] = strtod(text, &end);
+        if (end == text || !isfinite(out[count++]))
+            return 0;
+        if (*end != ',')
+            return *end ? 0 : count;
+        text = end;
+    }
+    return 0;
 }
 
 bool args_exclude(const struct args *args, bool one, bool other, const char *names)

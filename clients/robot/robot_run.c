@@ -49,19 +49,9 @@ bool robot_run_take_ignored(const struct args *args, void *out)
 bool robot_run_take_base(const struct args *args, void *out)
 {
     struct robot_run_options *options = out;
-    char *end = optarg;
-    int count = 0;
-    for (bool more = true; more && count < 6; count++) {
-        const char *at = end + (count > 0); /* after a comma */
-        options->robot.base[count] = strtod(at, &end);
-        if (end == at || !isfinite(options->robot.base[count]))
-            return args_error(args, "--base: expected numbers, found '%s'", optarg);
-        more = *end == ',';
-    }
-    if ((count != 3 && count != 6) || *end)
-        return args_error(args, "--base: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, found '%s'",
-                          optarg);
-    return true;
+    const int count = args_numbers(optarg, 6, options->robot.base);
+    return count == 3 || count == 6 ||
+           args_error(args, "--base: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, found '%s'", optarg);
 }
 
 bool robot_run_place(struct robot_run *run, double time, const char *where)
