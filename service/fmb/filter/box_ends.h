@@ -19,7 +19,7 @@
 #ifndef FMB_BOX_ENDS_H
 #define FMB_BOX_ENDS_H
 
-#include "slabs_evaluate.h"
+#include "kernel_lanes.h"
 #include "slabs_second.h"
 
 /* u. */
@@ -43,12 +43,10 @@
 /* Farther away nothing is said, for fear of overflow. */
 #define BOX_FARTHEST 0x1p500
 
-/* What boxes need of the frames besides struct pair_lanes: as they stand in prepared frames. */
+/* What boxes need besides struct pair_lanes. */
 struct box_places {
-    lanes_bits summary[2];
-    lanes origin[2][3], velocity[2][3]; /* velocities are read where the kind drifts */
-    lanes error[2];
-    lanes_mask exact; /* nothing rounds (slabs_second.h) */
+    const struct frame_lanes *frame; /* [2], as prepared */
+    lanes_mask exact;                /* nothing rounds (slabs_second.h) */
     double duration;
     /* Two cuboids, [axis]: the lanes in which both have exact coordinates along an axis along which
      * they do not drift, with [end of A][end of B] from one to the other (exact_difference()). */
@@ -131,11 +129,11 @@ INLINE void set_box_frame(const struct pair_lanes *pair, const struct kernel_tra
     const double twice = is_doubled(traits) ? 2 : 1;
     UNROLL(3)
     for (int axis = 0; axis < traits.dim; axis++) {
-        const lanes at = twice * places->origin[which][axis];
-        out->travel[axis] =
-            traits.drifts
-                ? (0.5 * twice) * (places->velocity[which][axis] * lanes_of(places->duration)) + 0.0
-                : lanes_of(0);
+        const lanes at = twice * places->frame[which].origin[axis];
+        out->travel[axis] = traits.drifts ? (0.5 * twice) * (places->frame[which].velocity[axis] *
+                                                             lanes_of(places->duration)) +
+                                                0.0
+                                          : lanes_of(0);
         out->centre[axis] =
             (traits.simplex[which] ? at : at + shift_of(traits, c, axis)) + out->travel[axis];
         out->own_sum[axis] =
@@ -248,7 +246,7 @@ INLINE void cut_to_extent(const struct pair_lanes *pair, const struct kernel_tra
                           int which, const struct box_places *places, int axis, lanes ends[2])
 {
     const bool twice = is_doubled(traits) && traits.simplex[which];
-    const lanes origin = places->origin[which][axis];
+    const lanes origin = places->frame[which].origin[axis];
     lanes own[2] = {-origin, origin};
     UNROLL(3)
     for (int i = 0; i < component_count(traits, which); i++) {
@@ -256,15 +254,16 @@ INLINE void cut_to_extent(const struct pair_lanes *pair, const struct kernel_tra
         add_component(traits.simplex[which], origin, twice ? 0.5 * c : c, own);
     }
     if (traits.drifts) {
-        const lanes velocity = places->velocity[which][axis], time = lanes_of(places->duration);
+        const lanes velocity = places->frame[which].velocity[axis],
+                    time = lanes_of(places->duration);
         const lanes way = velocity * time, slack = product_slack(velocity, time, way);
         own[0] = sum_above(own[0], lanes_max(slack - way, lanes_of(0)));
         own[1] = sum_above(own[1], lanes_max(way + slack, lanes_of(0)));
     }
     const lanes_mask inexact =
-        is_not(has_bit(places->summary[which], (unsigned) PREPARED_EXACT_X << axis));
+        is_not(has_bit(places->frame[which].summary, (unsigned) PREPARED_EXACT_X << axis));
     if (lanes_mask_bits(inexact)) {
-        const lanes error = lanes_select(inexact, places->error[which], lanes_of(0));
+        const lanes error = lanes_select(inexact, places->frame[which].error, lanes_of(0));
         own[0] = sum_above(own[0], error);
         own[1] = sum_above(own[1], error);
     }
@@ -282,11 +281,11 @@ INLINE void set_sizes(const struct pair_lanes *pair, const struct kernel_traits 
     const lanes half = lanes_abs(pair->half_drift[axis]);
     lanes slack = lanes_of(0);
     out->reach[axis] =
-        twice * lanes_abs(places->origin[1][axis] - places->origin[0][axis]) + 2 * half;
+        twice * lanes_abs(places->frame[1].origin[axis] - places->frame[0].origin[axis]) + 2 * half;
     UNROLL(2)
     for (int which = 0; which < 2; which++) {
         const lanes sum = magnitudes_along(pair, traits, which, axis);
-        const lanes at = twice * lanes_abs(places->origin[which][axis]);
+        const lanes at = twice * lanes_abs(places->frame[which].origin[axis]);
         out->reach[axis] +=
             traits.simplex[which] ? largest_along(pair, traits, which, axis) : 2 * sum;
         slack = lanes_max(at + 4 * out->frame[which].own_sum[axis], slack);
@@ -309,13 +308,13 @@ INLINE lanes_mask are_multiples(const struct pair_lanes *pair, const struct kern
     for (int which = 0; which < 2; which++) {
         if (lanes_mask_bits(all) == 0)
             break;
-        all &= is_multiple(places->origin[which][axis], at);
+        all &= is_multiple(places->frame[which].origin[axis], at);
         UNROLL(3)
         for (int i = 0; i < component_count(traits, which); i++)
             all &= is_multiple(pair->component[which][i][axis], at);
         if (!traits.drifts)
             continue;
-        const lanes v = places->velocity[which][axis], time = lanes_of(places->duration);
+        const lanes v = places->frame[which].velocity[axis], time = lanes_of(places->duration);
         all &= is_multiple(box->frame[which].travel[axis], at) &
                (product_slack(v, time, v * time) == 0);
     }
@@ -338,7 +337,7 @@ INLINE void begin_box(const struct pair_lanes *pair, const struct kernel_traits 
         set_sizes(pair, traits, places, axis, out);
         slack = lanes_max(out->slack[axis], slack);
         if (traits.drifts)
-            lost |= (places->velocity[0][axis] != places->velocity[1][axis]) &
+            lost |= (places->frame[0].velocity[axis] != places->frame[1].velocity[axis]) &
                     (pair->half_drift[axis] == 0);
     }
     out->exact = places->exact;
@@ -374,7 +373,8 @@ INLINE lanes_mask are_aligned(const struct pair_lanes *pair, const struct kernel
         UNROLL(3)
         for (int axis = 0; axis < traits.dim; axis++) {
             const int i = axis, j = traits.dim == 2 ? 1 - axis : next(axis);
-            out &= has_bit(places->summary[which], (unsigned) PREPARED_COMPONENTS_EXACT_X << axis);
+            out &= has_bit(places->frame[which].summary,
+                           (unsigned) PREPARED_COMPONENTS_EXACT_X << axis);
             UNROLL(3)
             for (int k = 0; k < traits.dim; k++)
                 out &= ((c[k][i] == 0) | (c[k][j] == 0)) & ((c[i][k] == 0) | (c[j][k] == 0));

@@ -23,8 +23,8 @@ static void put_point(const struct kernel_traits traits, double duration, lanes_
 /* Sets the box, [lower, upper][axis]; NAN in lanes in which doubles do not prove the limit of
  * fmb.h, 0 along axes beyond dim. Sets the point too, unless it is NULL. */
 static void find_box(const struct kernel_traits traits, const struct clip_wire wire[2],
-                     const struct frame_lanes frame[2], const struct pair_lanes *pair,
-                     struct box_places *places, lanes box[2][3], lanes *point)
+                     const struct pair_lanes *pair, struct box_places *places, lanes box[2][3],
+                     lanes *point)
 {
     const lanes_mask aligned = are_aligned(pair, traits, places);
     const bool clips = !lanes_all(aligned | is_not(pair->in_range));
@@ -33,7 +33,7 @@ static void find_box(const struct kernel_traits traits, const struct clip_wire w
     struct clip_mean mean = {.count = lanes_of(0)};
     places->exact = (lanes_mask){0};
     if (clips)
-        set_exact(traits, frame, pair, places);
+        set_exact(traits, pair, places);
     begin_box(pair, traits, places, &of_pair);
     lanes_mask good = aligned & of_pair.usable;
     for (int i = 0; i < 6; i++)
@@ -56,15 +56,6 @@ static void find_box(const struct kernel_traits traits, const struct clip_wire w
                 axis < traits.dim ? lanes_select(good, box[end][axis], lanes_of(NAN)) : lanes_of(0);
 }
 
-/* Stores a number of each lane, stride doubles apart. */
-static void put_lanes(lanes x, double *out, size_t stride)
-{
-    double at[LANES];
-    memcpy(at, &x, sizeof at);
-    for (size_t lane = 0; lane < LANES; lane++)
-        out[lane * stride] = at[lane];
-}
-
 kernel_box_function KERNEL_PASTE(kernel, KERNEL_NAME);
 
 void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kernel_kind kind)
@@ -80,7 +71,7 @@ void KERNEL_PASTE(kernel, KERNEL_NAME)(const struct kernel_call *call, enum kern
         lanes box[2][3], point[1 + FMB_DIM_MAX];
         gather_pairs(traits, &call->pairs[first], frame);
         set_places(traits, frame, call->duration, &pair, &places);
-        find_box(traits, wire, frame, &pair, &places, box, call->points ? point : NULL);
+        find_box(traits, wire, &pair, &places, box, call->points ? point : NULL);
         for (int i = 0; i < 6; i++)
             put_lanes(box[i / 3][i % 3], &call->boxes[first][i / 3][i % 3], 6);
         for (int k = 0; k <= FMB_DIM_MAX && call->points; k++)

@@ -9,9 +9,10 @@
 #include "kernel_second.h"
 
 /* Sets what is exact: exact, level and apart. */
-INLINE void set_exact(const struct kernel_traits traits, const struct frame_lanes frame[2],
-                      const struct pair_lanes *pair, struct box_places *out)
+INLINE void set_exact(const struct kernel_traits traits, const struct pair_lanes *pair,
+                      struct box_places *out)
 {
+    const struct frame_lanes *frame = out->frame;
     out->exact = nothing_rounds(traits, &frame[0], &frame[1], out->duration, pair);
     const lanes_bits axes = known_axes(traits, &frame[0]) & known_axes(traits, &frame[1]);
     const bool any = lanes_mask_bits(is_centred(&frame[0]) | is_centred(&frame[1]));
@@ -35,19 +36,13 @@ INLINE void set_exact(const struct kernel_traits traits, const struct frame_lane
     }
 }
 
-/* Sets the rest of the places, and the pair. */
+/* Sets the rest of the places, which point to the frames, and the pair. */
 INLINE void set_places(const struct kernel_traits traits, const struct frame_lanes frame[2],
                        double duration, struct pair_lanes *pair, struct box_places *out)
 {
     set_pair(traits, &frame[0], &frame[1], duration, pair);
+    out->frame = frame;
     out->duration = duration;
-    for (int which = 0; which < 2; which++) {
-        out->summary[which] = frame[which].summary;
-        out->error[which] = frame[which].error;
-        memcpy(out->origin[which], frame[which].origin, sizeof out->origin[which]);
-        if (traits.drifts)
-            memcpy(out->velocity[which], frame[which].velocity, sizeof out->velocity[which]);
-    }
 }
 
 #endif

@@ -73,8 +73,6 @@ enum { WORDS = sizeof(struct fmb_prepared) / sizeof(double) };
 
 #if LANES == 1
 
-enum { GATHERED = 1 }; /* frames that gather_four() reads: all LANES */
-
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
     UNROLL(4)
@@ -83,8 +81,6 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 }
 
 #elif LANES == 2
-
-enum { GATHERED = 2 };
 
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
@@ -97,8 +93,6 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 }
 
 #elif LANES == 4
-
-enum { GATHERED = 4 };
 
 INLINE void gather_four(const double *const frame[LANES], int first, lanes *words)
 {
@@ -114,8 +108,6 @@ INLINE void gather_four(const double *const frame[LANES], int first, lanes *word
 }
 
 #else
-
-enum { GATHERED = 8 };
 
 /* Four words of two frames: the second half is inserted as it is loaded, which saves a shuffle. */
 INLINE lanes four_of_two(const double *low, const double *high)
@@ -189,7 +181,7 @@ INLINE void gather_velocity(const struct kernel_traits traits, const double *con
     const double *velocity[LANES];
     lanes words[4];
     UNROLL(8)
-    for (int lane = 0; lane < GATHERED; lane++)
+    for (int lane = 0; lane < LANES; lane++)
         velocity[lane] = traits.dim == 2
                              ? frame[lane] + PREPARED_VELOCITY_2D
                              : ((const struct fmb_prepared *) frame[lane])->placement->velocity;
@@ -256,6 +248,16 @@ INLINE void evaluate_pair(const struct kernel_traits traits, const struct pair_l
 {
     slabs_result_begin(result);
     evaluate_slabs(pair, traits, result);
+}
+
+/* Writes lane i to out[i * stride]. */
+INLINE void put_lanes(lanes x, double *out, int stride)
+{
+    double at[LANES];
+    memcpy(at, &x, sizeof at);
+    UNROLL(8)
+    for (int lane = 0; lane < LANES; lane++)
+        out[lane * stride] = at[lane];
 }
 
 /* ---- Outcomes ---- */

@@ -2,54 +2,29 @@
  * job (kernel_lanes.h). */
 #include "kernel_second.h"
 
-#ifdef KERNEL_TIMES
-
-/* Writes lane i to out[i * stride]. */
-INLINE void scatter(lanes x, double *out, int stride)
-{
-    double at[LANES];
-    memcpy(at, &x, sizeof at);
-    UNROLL(8)
-    for (int lane = 0; lane < LANES; lane++)
-        out[lane * stride] = at[lane];
-}
-
-#endif
-
-#ifdef KERNEL_SECOND
-
-INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
-                           size_t first)
-{
-    struct frame_lanes frame[2];
-    struct pair_lanes pair;
-    gather_pairs(traits, &call->pairs[first], frame);
-    set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
-    put_outcomes(second_outcomes(traits, &frame[0], &frame[1], call->duration, &pair),
-                 &call->outcomes[first]);
-}
-
-#else
-
 INLINE void evaluate_lanes(const struct kernel_traits traits, const struct kernel_call *call,
                            size_t first)
 {
     struct frame_lanes frame[2];
     struct pair_lanes pair;
     struct slabs_result result;
+    struct outcomes outcomes;
+    lanes times[2];
     gather_pairs(traits, &call->pairs[first], frame);
     set_pair(traits, &frame[0], &frame[1], call->duration, &pair);
-    evaluate_pair(traits, &pair, &result);
-    put_outcomes(outcomes_of(&pair, &result), &call->outcomes[first]);
-#ifdef KERNEL_TIMES
-    lanes times[2];
+    if (SECOND) {
+        outcomes = second_outcomes(traits, &frame[0], &frame[1], call->duration, &pair);
+    } else {
+        evaluate_pair(traits, &pair, &result);
+        outcomes = outcomes_of(&pair, &result);
+    }
+    put_outcomes(outcomes, &call->outcomes[first]);
+    if (!TIMES)
+        return;
     times_of(&pair, &result, call->duration, times);
-    scatter(times[0], &call->contacts[first][0], 2);
-    scatter(times[1], &call->contacts[first][1], 2);
-#endif
+    put_lanes(times[0], &call->contacts[first][0], 2);
+    put_lanes(times[1], &call->contacts[first][1], 2);
 }
-
-#endif
 
 #define KERNEL_FUNCTION(name, kind)                                 \
     static void name(const struct kernel_call *call)                \

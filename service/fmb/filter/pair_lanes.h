@@ -6,24 +6,6 @@
 #include "lanes.h"
 #include "slabs.h"
 
-/* The constants of a kernel: the kind of its pairs, and its job. */
-struct kernel_traits {
-    int dim;
-    bool simplex[2]; /* [a, b]: a tetrahedron, a triangle in 2D, or a face; else a cuboid */
-    bool face[2];    /* [a, b]: in 3D, a simplex of two components */
-    bool drifts;
-    bool axis_aligned; /* 3D: edges may be parallel to the same axis; zero normals are looked for */
-    bool swap_invariant; /* every number has the same bits for the pair with its frames swapped */
-    /* Two frames of the same shape; of two lanes, the second holds the pair with its frames
-     * swapped. The slabs of b in one lane are those of a in the other, and those of edges i of a
-     * and j of b are those of j and i. */
-    bool mirrored;
-    bool times;  /* times of contact are computed; requires swap_invariant */
-    bool box;    /* the box is computed, also of frames that move with equal velocities */
-    bool rough;  /* the first of two passes: bounds are SLABS_ROUGH times as wide */
-    bool second; /* the second pass: in some lanes nothing rounds, and signs along axes are known */
-};
-
 /* A pair, seen from the reference point of a: the centre of a cuboid, the origin of a simplex. If a
  * frame is a cuboid, all lengths of the pair are doubled, so that half an edge of the cuboid is its
  * component. */
@@ -48,23 +30,6 @@ struct pair_lanes {
 INLINE int next(int i)
 {
     return i == 2 ? 0 : i + 1;
-}
-
-INLINE int component_count(const struct kernel_traits traits, int which)
-{
-    return traits.face[which] ? 2 : traits.dim;
-}
-
-INLINE int edge_count(const struct kernel_traits traits, int which)
-{
-    return !traits.simplex[which] ? traits.dim : component_count(traits, which) == 2 ? 3 : 6;
-}
-
-/* The number (slabs.h) of the edge at an index in [0, edge_count): a face has c_0, c_1 and c_1 -
- * c_0. */
-INLINE int edge_at(const struct kernel_traits traits, int which, int index)
-{
-    return traits.face[which] && index == 2 ? 5 : index;
 }
 
 /* Whether a frame in 3D has the edge 3 + i, a difference of components. */

@@ -169,55 +169,25 @@ INLINE void set_pair(const struct slabs_pair *pair, const struct kernel_traits t
     memset(out->across, 0, sizeof out->across);
 }
 
-/* next: where the slabs are stored. */
-INLINE void evaluate_one(const struct slabs_pair *pair, const struct kernel_traits traits,
-                         bool rounds, struct slab_value *next, struct slabs_result *result)
+int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX])
 {
+    const struct kernel_traits traits = {
+        .dim = pair->a.dim,
+        .simplex = {pair->a.shape != FMB_CUBOID, pair->b.shape != FMB_CUBOID},
+        .face = {pair->a.shape == FMB_FACE, pair->b.shape == FMB_FACE},
+        .drifts = pair->motion.drifts,
+        .axis_aligned = pair->a.dim == 3,
+        .swap_invariant = true,
+        .second = true};
     struct pair_lanes one;
+    struct slabs_result result;
     set_pair(pair, traits, &one);
     if (!rounds)
         one.unit = one.reach = one.error = 0;
-    slabs_result_begin(result);
-    result->next = next;
-    evaluate_slabs(&one, traits, result);
-}
-
-static struct slabs_result evaluate_list(const struct slabs_pair *pair, bool rounds,
-                                         struct slab_value *next)
-{
-    struct slabs_result result;
-#define WALK(dimension, x, y, drift)                                                           \
-    if (pair->a.dim == (dimension) && pair->a.shape == (x) && pair->b.shape == (y) &&          \
-        pair->motion.drifts == (drift))                                                        \
-        evaluate_one(pair,                                                                     \
-                     (struct kernel_traits){.dim = dimension,                                  \
-                                            .simplex = {(x) != FMB_CUBOID, (y) != FMB_CUBOID}, \
-                                            .face = {(x) == FMB_FACE, (y) == FMB_FACE},        \
-                                            .drifts = drift,                                   \
-                                            .axis_aligned = (dimension) == 3,                  \
-                                            .swap_invariant = true,                            \
-                                            .second = true},                                   \
-                     rounds, next, &result);
-#define WALK_MOTIONS(dimension, x, y) WALK(dimension, x, y, false) WALK(dimension, x, y, true)
-#define WALK_PAIR(x, y) WALK_MOTIONS(2, x, y) WALK_MOTIONS(3, x, y)
-#define WALK_FACE(x) WALK_MOTIONS(3, x, FMB_FACE) WALK_MOTIONS(3, FMB_FACE, x)
-    WALK_PAIR(FMB_CUBOID, FMB_CUBOID)
-    WALK_PAIR(FMB_CUBOID, FMB_TETRAHEDRON)
-    WALK_PAIR(FMB_TETRAHEDRON, FMB_CUBOID)
-    WALK_PAIR(FMB_TETRAHEDRON, FMB_TETRAHEDRON)
-    WALK_FACE(FMB_CUBOID)
-    WALK_FACE(FMB_TETRAHEDRON)
-    WALK_MOTIONS(3, FMB_FACE, FMB_FACE)
-#undef WALK_FACE
-#undef WALK_PAIR
-#undef WALK_MOTIONS
-#undef WALK
-    return result;
-}
-
-int slabs_list(const struct slabs_pair *pair, bool rounds, struct slab_value out[SLABS_MAX])
-{
-    return (int) (evaluate_list(pair, rounds, out).next - out);
+    slabs_result_begin(&result);
+    result.next = out;
+    evaluate_slabs(&one, traits, &result);
+    return (int) (result.next - out);
 }
 
 void slab_inequalities(const struct slab_value *slab, struct inequality out[2])

@@ -39,6 +39,7 @@
 
 #include "clip.h"
 #include "fmb_batch.h"
+#include "inlined.h"
 #include "relative.h"
 
 /* Bounds on the error of a gap, and of all numbers that it is made of, relative to the scale of the
@@ -83,6 +84,40 @@ bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, d
  * followed, for a tetrahedron, by c2 - c1, c0 - c2, c1 - c0 (for a triangle in 2D, by c1 - c0). A
  * face has numbers 0, 1 and 5 of these. */
 enum { SLABS_EDGES = 6, SLABS_EDGE_OF_B = SLABS_EDGES, SLABS_DRIFT = 2 * SLABS_EDGES };
+
+/* The constants of a kernel: the kind of its pairs, and its job. */
+struct kernel_traits {
+    int dim;
+    bool simplex[2]; /* [a, b]: a tetrahedron, a triangle in 2D, or a face; else a cuboid */
+    bool face[2];    /* [a, b]: in 3D, a simplex of two components */
+    bool drifts;
+    bool axis_aligned; /* 3D: edges may be parallel to the same axis; zero normals are looked for */
+    bool swap_invariant; /* every number has the same bits for the pair with its frames swapped */
+    /* Two frames of the same shape; of two lanes, the second holds the pair with its frames
+     * swapped. The slabs of b in one lane are those of a in the other, and those of edges i of a
+     * and j of b are those of j and i. */
+    bool mirrored;
+    bool times;  /* times of contact are computed; requires swap_invariant */
+    bool box;    /* the box is computed, also of frames that move with equal velocities */
+    bool rough;  /* the first of two passes: bounds are SLABS_ROUGH times as wide */
+    bool second; /* the second pass: in some lanes nothing rounds, and signs along axes are known */
+};
+
+INLINE int component_count(const struct kernel_traits traits, int which)
+{
+    return traits.face[which] ? 2 : traits.dim;
+}
+
+INLINE int edge_count(const struct kernel_traits traits, int which)
+{
+    return !traits.simplex[which] ? traits.dim : component_count(traits, which) == 2 ? 3 : 6;
+}
+
+/* The number of the edge at an index in [0, edge_count): a face has c_0, c_1 and c_1 - c_0. */
+INLINE int edge_at(const struct kernel_traits traits, int which, int index)
+{
+    return traits.face[which] && index == 2 ? 5 : index;
+}
 
 /* In 3D the normal is u x v; in 2D it is u rotated by a right angle, (-u_y, u_x). */
 struct slab_normal {

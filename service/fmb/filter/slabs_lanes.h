@@ -80,12 +80,7 @@ INLINE struct slab_extent extent_difference(const struct kernel_traits traits, s
 INLINE struct slab_extent extent_sum(const struct kernel_traits traits, struct slab_extent a,
                                      struct slab_extent b)
 {
-    if (traits.simplex[0] && traits.simplex[1])
-        return (struct slab_extent){a.low + b.low, a.high + b.high, lanes_of(0)};
-    if (!traits.simplex[0] && !traits.simplex[1])
-        return (struct slab_extent){lanes_of(0), lanes_of(0), a.radius + b.radius};
-    return traits.simplex[0] ? (struct slab_extent){a.low, a.high, b.radius}
-                             : (struct slab_extent){b.low, b.high, a.radius};
+    return extent_difference(traits, a, (struct slab_extent){-b.high, -b.low, b.radius});
 }
 
 /* The gap: how far the offset stays beyond D over the window, that is, beyond D widened by the

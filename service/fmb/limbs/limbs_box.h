@@ -118,10 +118,11 @@ LIMBS_FUNCTION bool complete_products_of(struct limbs_pair *pair, struct slab_no
 }
 
 /* Adds a slab of frame f. at: memory. */
-LIMBS_FUNCTION void add_slab_of(const struct limbs_pair *pair, const struct kernel_traits traits,
-                                int f, const struct limbs_products *of,
-                                limbs_number at[CLIP_VERTICES], struct box_slabs *out)
+LIMBS_FUNCTION void add_slab_of(const struct limbs_pair *pair, int f,
+                                const struct limbs_products *of, limbs_number at[CLIP_VERTICES],
+                                struct box_slabs *out)
 {
+    const struct kernel_traits traits = pair->traits;
     const int n = pair->limbs, k = out->count++;
     const size_t size = (size_t) n * sizeof(uint64_t);
     limbs_number low, high, start = {0};
@@ -140,8 +141,8 @@ LIMBS_FUNCTION void add_slab_of(const struct limbs_pair *pair, const struct kern
 }
 
 /* Sets the slabs of frame f. */
-LIMBS_FUNCTION void set_limbs_slabs(struct limbs_pair *pair, const struct kernel_traits traits,
-                                    int f, limbs_number at[CLIP_VERTICES], struct box_slabs *out)
+LIMBS_FUNCTION void set_limbs_slabs(struct limbs_pair *pair, int f, limbs_number at[CLIP_VERTICES],
+                                    struct box_slabs *out)
 {
     struct limbs_products of;
     struct slab_set set;
@@ -153,7 +154,7 @@ LIMBS_FUNCTION void set_limbs_slabs(struct limbs_pair *pair, const struct kernel
         limbs_set_products(pair, &normal, &of);
         complete_products(pair, &of);
         if (pins || !is_constant(pair, &of, f, f))
-            add_slab_of(pair, traits, f, &of, at, out);
+            add_slab_of(pair, f, &of, at, out);
     }
 }
 
@@ -231,17 +232,16 @@ struct crossing_parameter {
 /* Sets a parameter from the products of the normal of the other two directions: that along edge e
  * of frame 0 or 1 (which), or the time (which = 2). It does not exist where the directions are
  * dependent. */
-LIMBS_FUNCTION void set_parameter(const struct limbs_pair *pair, const struct kernel_traits traits,
-                                  const struct limbs_products *of, int which, int e,
-                                  struct crossing_parameter *out)
+LIMBS_FUNCTION void set_parameter(const struct limbs_pair *pair, const struct limbs_products *of,
+                                  int which, int e, struct crossing_parameter *out)
 {
     const int n = pair->limbs;
     const size_t size = (size_t) n * sizeof(uint64_t);
     limbs_number all, offset = {0};
-    memcpy(all, which == 2 ? of->drift : of->component[which][e < 3 ? e : edge_to(traits, e)],
+    memcpy(all, which == 2 ? of->drift : of->component[which][e < 3 ? e : edge_to(pair->traits, e)],
            size);
     if (which < 2 && e >= 3)
-        subtract(n, all, of->component[which][edge_from(traits, e)]);
+        subtract(n, all, of->component[which][edge_from(pair->traits, e)]);
     if (which < 2 && pair->frame[which]->shape == FMB_BOX)
         add(n, all, of->component[which][e]);
     out->exists = !is_zero(n, all);
@@ -287,7 +287,6 @@ struct box_work {
 
 struct box_search {
     struct limbs_pair *pair;
-    struct kernel_traits traits;
     struct box_work *work;
     struct clip_wire wire[2];
     /* In doubles: the points of the frames, and how far the intersection reaches from 0, [below,
@@ -329,16 +328,14 @@ LIMBS_FUNCTION void add_crossings_of(struct box_search *search, int i, int j)
 {
     struct limbs_pair *pair = search->pair;
     struct box_work *work = search->work;
-    const struct kernel_traits traits = search->traits;
+    const struct kernel_traits traits = search->pair->traits;
     const struct clip_wire *wire = search->wire;
     const struct parallel_edges a = edges_along(&wire[0], i), b = edges_along(&wire[1], j);
     const int n = pair->limbs;
     struct limbs_products of;
     work->t.exists = false;
     if (!complete_products_of(
-            pair,
-            (struct slab_normal){edge_at(traits, 0, i), SLABS_EDGE_OF_B + edge_at(traits, 1, j)},
-            &of))
+            pair, (struct slab_normal){edge_number(traits, 0, i), edge_number(traits, 1, j)}, &of))
         return;
     for (int k = 0; k < a.count * b.count; k++) {
         const int edge = a.segment[k / b.count], v = wire[0].from[edge];
@@ -347,7 +344,7 @@ LIMBS_FUNCTION void add_crossings_of(struct box_search *search, int i, int j)
         if (!is_in_range(n, &work->s, v, w, &at[0]) || !is_in_range(n, &work->r, v, w, &at_r))
             continue;
         if (!work->t.exists)
-            set_parameter(pair, traits, &of, 2, 0, &work->t);
+            set_parameter(pair, &of, 2, 0, &work->t);
         if (work->t.exists && is_in_range(n, &work->t, v, w, &at[1]))
             add_crossing_point(search, i, v, at);
     }
@@ -358,33 +355,21 @@ LIMBS_FUNCTION void add_all_crossings(struct box_search *search)
 {
     struct limbs_pair *pair = search->pair;
     struct box_work *work = search->work;
-    const struct kernel_traits traits = search->traits;
+    const struct kernel_traits traits = search->pair->traits;
     for (int f = 0; f < 2; f++)
         for (int i = 0; i < edge_count(traits, f); i++)
             work->exists[f][i] = complete_products_of(
-                pair,
-                (struct slab_normal){(f ? SLABS_EDGE_OF_B : 0) + edge_at(traits, f, i),
-                                     SLABS_DRIFT},
+                pair, (struct slab_normal){edge_number(traits, f, i), SLABS_DRIFT},
                 &work->of[f][i]);
     for (int i = 0; i < edge_count(traits, 0); i++)
         for (int j = 0; j < edge_count(traits, 1); j++) {
             if (!work->exists[0][i] || !work->exists[1][j])
                 continue;
-            set_parameter(pair, traits, &work->of[1][j], 0, edge_at(traits, 0, i), &work->s);
-            set_parameter(pair, traits, &work->of[0][i], 1, edge_at(traits, 1, j), &work->r);
+            set_parameter(pair, &work->of[1][j], 0, edge_at(traits, 0, i), &work->s);
+            set_parameter(pair, &work->of[0][i], 1, edge_at(traits, 1, j), &work->r);
             if (work->s.exists && work->r.exists)
                 add_crossings_of(search, i, j);
         }
-}
-
-LIMBS_FUNCTION struct kernel_traits traits_of_frames(const struct frame_pair *pair)
-{
-    const struct fmb_frame *a = pair->a.frame, *b = pair->b.frame;
-    return (struct kernel_traits){.dim = a->dim,
-                                  .simplex = {frame_is_simplex(a), frame_is_simplex(b)},
-                                  .face = {a->shape == FMB_FACE, b->shape == FMB_FACE},
-                                  .drifts = pair->duration > 0 && pair_moves(pair),
-                                  .box = true};
 }
 
 LIMBS_FUNCTION void begin_search(const struct limbs_question *question, struct limbs_pair *pair,
@@ -392,10 +377,9 @@ LIMBS_FUNCTION void begin_search(const struct limbs_question *question, struct l
 {
     limbs_prepare(question, pair);
     out->pair = pair;
-    out->traits = traits_of_frames(question->pair);
     out->work = work;
     for (int f = 0; f < 2; f++)
-        set_wire(out->traits, f, &out->wire[f]);
+        set_wire(pair->traits, f, &out->wire[f]);
 }
 
 /* ---- Boxes in doubles ---- */
@@ -403,14 +387,14 @@ LIMBS_FUNCTION void begin_search(const struct limbs_question *question, struct l
 /* Sets the reach. */
 LIMBS_FUNCTION void find_reach(struct box_search *search, const struct box_pair *box)
 {
-    const struct kernel_traits traits = search->traits;
+    const struct kernel_traits traits = search->pair->traits;
     for (int i = 0; i < 6; i++)
         search->reach[i / 3][i % 3] = -INFINITY;
     for (int f = 0; f < 2; f++) {
         const struct clip_wire *wire = &search->wire[f];
         struct box_slabs *slabs = &search->work->slabs;
         struct clip_span spans[CLIP_SEGMENTS];
-        set_limbs_slabs(search->pair, traits, !f, search->work->at, slabs);
+        set_limbs_slabs(search->pair, !f, search->work->at, slabs);
         set_points(traits, f, wire, &box->frame[f], &search->points[f]);
         for (int s = 0; s < wire->segments; s++)
             spans[s] = clip_in_limbs(search->pair->limbs, slabs, wire->from[s], wire->to[s]);
@@ -433,19 +417,19 @@ LIMBS_FUNCTION bool box_of_pair(const struct limbs_question *question,
     struct box_pair of_pair;
     struct box_ends ends;
     begin_search(question, limbs, work, &search);
-    gather_pairs(search.traits, frames, frame);
-    set_places(search.traits, frame, duration, &pair, &places);
-    set_exact(search.traits, frame, &pair, &places);
-    begin_box(&pair, search.traits, &places, &of_pair);
+    gather_pairs(limbs->traits, frames, frame);
+    set_places(limbs->traits, frame, duration, &pair, &places);
+    set_exact(limbs->traits, &pair, &places);
+    begin_box(&pair, limbs->traits, &places, &of_pair);
     if (!pair.in_range)
         return false;
     find_reach(&search, &of_pair);
     memcpy(ends.outer, search.reach, sizeof ends.outer);
     memcpy(ends.inner, search.reach, sizeof ends.inner);
-    if (!are_near(search.traits, &of_pair, &ends))
+    if (!are_near(limbs->traits, &of_pair, &ends))
         return false;
     memset(box, 0, 2 * FMB_DIM_MAX * sizeof **box);
-    put_box(&pair, search.traits, &places, &of_pair, &ends, box);
+    put_box(&pair, limbs->traits, &places, &of_pair, &ends, box);
     return true;
 }
 

@@ -45,53 +45,39 @@
 
 /* ---- The list of normals ---- */
 
-/* Lists the edges of a frame; returns their number. */
-static inline int list_edges(const struct fmb_frame *frame, int f, int edge[SLABS_EDGES])
+/* Returns edge i of a frame, by number (slabs.h). */
+static inline int edge_number(const struct kernel_traits traits, int f, int i)
 {
-    const int first = f ? SLABS_EDGE_OF_B : 0, flat_edge = frame->dim == 2 ? 2 : 5;
-    int count = frame->count;
-    for (int i = 0; i < count; i++)
-        edge[i] = first + i;
-    for (int i = 3; i < SLABS_EDGES && count == i && frame_is_simplex(frame); i++)
-        edge[count++] = first + i;
-    if (count == 2 && frame_is_simplex(frame))
-        edge[count++] = first + flat_edge;
-    return count;
+    return (f ? SLABS_EDGE_OF_B : 0) + edge_at(traits, f, i);
 }
 
 /* Lists the normals of the faces of a frame, in 2D of its edges; returns their number. */
-static inline int list_faces(const struct fmb_frame *frame, int f, struct slab_normal out[4])
+static inline int list_faces(const struct kernel_traits traits, int f, struct slab_normal out[4])
 {
     static const unsigned char plane[4][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}};
-    const int first = f ? SLABS_EDGE_OF_B : 0, count = frame->count == 2 ? 1 : 3;
-    int edge[SLABS_EDGES];
-    const int edges = list_edges(frame, f, edge);
-    for (int i = 0; i < edges && frame->dim == 2; i++)
-        out[i] = (struct slab_normal){edge[i], 0};
-    if (frame->dim == 2)
-        return edges;
-    for (int i = 0; i < 4; i++)
-        out[i] = (struct slab_normal){first + plane[i][0], first + plane[i][1]};
-    return edges == SLABS_EDGES ? 4 : count;
+    const int first = f ? SLABS_EDGE_OF_B : 0;
+    const int faces = traits.face[f] ? 1 : traits.simplex[f] ? 4 : 3;
+    const int count = traits.dim == 2 ? edge_count(traits, f) : faces;
+    for (int i = 0; i < count; i++)
+        out[i] = traits.dim == 2 ? (struct slab_normal){first + i, 0}
+                                 : (struct slab_normal){first + plane[i][0], first + plane[i][1]};
+    return count;
 }
 
 /* Lists the normals of a pair whose difference is solid; returns their number. */
-static inline int list_normals(const struct frame_pair *pair, bool drifts,
+static inline int list_normals(const struct kernel_traits traits, bool drifts,
                                struct slab_normal out[SLABS_MAX])
 {
-    const bool space = pair->a.frame->dim == 3;
-    int edge[2][SLABS_EDGES], edges[2], count = 0;
-    for (int f = 0; f < 2; f++) {
-        const struct fmb_frame *frame = f ? pair->b.frame : pair->a.frame;
-        edges[f] = list_edges(frame, f, edge[f]);
-        count += list_faces(frame, f, out + count);
-    }
-    for (int i = 0; i < edges[0] && space; i++)
-        for (int j = 0; j < edges[1]; j++)
-            out[count++] = (struct slab_normal){edge[0][i], edge[1][j]};
+    const bool space = traits.dim == 3;
+    int count = list_faces(traits, 0, out);
+    count += list_faces(traits, 1, out + count);
+    for (int i = 0; i < edge_count(traits, 0) && space; i++)
+        for (int j = 0; j < edge_count(traits, 1); j++)
+            out[count++] =
+                (struct slab_normal){edge_number(traits, 0, i), edge_number(traits, 1, j)};
     for (int f = 0; f < 2 && drifts && space; f++)
-        for (int i = 0; i < edges[f]; i++)
-            out[count++] = (struct slab_normal){edge[f][i], SLABS_DRIFT};
+        for (int i = 0; i < edge_count(traits, f); i++)
+            out[count++] = (struct slab_normal){edge_number(traits, f, i), SLABS_DRIFT};
     if (drifts && !space)
         out[count++] = (struct slab_normal){SLABS_DRIFT, 0};
     return count;
@@ -127,17 +113,18 @@ LIMBS_FUNCTION bool is_constant(const struct limbs_pair *pair, const struct limb
 /* Sets the slabs of frames first to last; of a solid difference only its rank. */
 LIMBS_FUNCTION void set_slabs_of(struct limbs_pair *pair, int first, int last, struct slab_set *out)
 {
-    const bool plane = pair->frame[0]->dim == 2;
+    const bool plane = pair->traits.dim == 2;
     struct normal normal;
     struct limbs_products of;
     int u = 0;
     out->rank = 3;
     out->edges = out->axis = 0;
-    out->faces = list_faces(pair->frame[first], first, out->face);
+    out->faces = list_faces(pair->traits, first, out->face);
     if (!pair->frame[first]->flat || !pair->frame[last]->flat)
         return;
     for (int f = first; f <= last; f++)
-        out->edges += list_edges(pair->frame[f], f, out->edge + out->edges);
+        for (int i = 0; i < edge_count(pair->traits, f); i++)
+            out->edge[out->edges++] = edge_number(pair->traits, f, i);
     while (u < out->edges && edge_in_view(pair, out->edge[u], LIMBS_WORLD)->limbs == 0)
         u++;
     out->rank = u < out->edges;
@@ -403,7 +390,7 @@ LIMBS_FUNCTION enum fmb_verdict verdict_of_solid(struct limbs_pair *pair,
                                                  const struct frame_pair *frames, double contact[2])
 {
     struct slab_normal normal[SLABS_MAX];
-    const int count = list_normals(frames, pair->drift.limbs > 0, normal);
+    const int count = list_normals(pair->traits, pair->drift.limbs > 0, normal);
     const int sign = sign_of_slabs(pair, normal, NULL, count, frames->duration, contact);
     return sign > 0 ? FMB_SEPARATED : sign == 0 ? FMB_TOUCHING : FMB_OVERLAPPING;
 }

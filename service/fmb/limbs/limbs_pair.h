@@ -43,6 +43,7 @@ enum limbs_view { LIMBS_OWN, LIMBS_ACROSS, LIMBS_WORLD, LIMBS_VIEWS };
 /* A pair. Lengths are integers times 2^unit of its span. Contains pointers into itself: must not be
  * copied. */
 struct limbs_pair {
+    struct kernel_traits traits; /* those of boxes */
     const struct fmb_frame *frame[2];
     int limbs; /* of a number */
     /* For a box: half of its components, and its centre as the origin. */
@@ -170,6 +171,16 @@ LIMBS_FUNCTION void set_turns(const struct limbs_quaternion q[2], struct limbs_p
     out->all = &out->relative.norm;
 }
 
+LIMBS_FUNCTION struct kernel_traits traits_of_frames(const struct frame_pair *pair)
+{
+    const struct fmb_frame *a = pair->a.frame, *b = pair->b.frame;
+    return (struct kernel_traits){.dim = a->dim,
+                                  .simplex = {frame_is_simplex(a), frame_is_simplex(b)},
+                                  .face = {a->shape == FMB_FACE, b->shape == FMB_FACE},
+                                  .drifts = pair->duration > 0 && pair_moves(pair),
+                                  .box = true};
+}
+
 LIMBS_FUNCTION void limbs_prepare(const struct limbs_question *question, struct limbs_pair *out)
 {
     const struct frame_pair *pair = question->pair;
@@ -179,6 +190,7 @@ LIMBS_FUNCTION void limbs_prepare(const struct limbs_question *question, struct 
     const bool one = span.top - span.unit <= 61 && span.unit >= -1000 && span.unit <= 1000;
     const struct scale scale = {dyadic_of(pair->duration), span.unit,
                                 one ? ldexp(1, (int) -span.unit) : 0};
+    out->traits = traits_of_frames(pair);
     out->limbs = question->limbs;
     out->common = out->all = out->norm[0] = out->norm[1] = NULL;
     memset(out->to_world, 0, sizeof out->to_world);

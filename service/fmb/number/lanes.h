@@ -40,55 +40,42 @@ typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES))); /* 0 or -1 *
 #endif
 #endif
 
-/* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
-#if LANES == 1
-INLINE lanes lanes_max(lanes x, lanes y)
-{
-    return x > y ? x : y;
-}
-INLINE lanes lanes_min(lanes x, lanes y)
-{
-    return x < y ? x : y;
-}
-#elif LANES == 2 && defined(__SSE2__)
-INLINE lanes lanes_max(lanes x, lanes y)
-{
-    return (lanes) _mm_max_pd((__m128d) x, (__m128d) y);
-}
-INLINE lanes lanes_min(lanes x, lanes y)
-{
-    return (lanes) _mm_min_pd((__m128d) x, (__m128d) y);
-}
+/* The intrinsics of a register of LANES doubles. */
+#if LANES == 2 && defined(__SSE2__)
+typedef __m128d lanes_register;
+#define LANES_PD(name) _mm_##name##_pd
 #elif LANES == 4 && defined(__AVX__)
-INLINE lanes lanes_max(lanes x, lanes y)
-{
-    return (lanes) _mm256_max_pd((__m256d) x, (__m256d) y);
-}
-INLINE lanes lanes_min(lanes x, lanes y)
-{
-    return (lanes) _mm256_min_pd((__m256d) x, (__m256d) y);
-}
+typedef __m256d lanes_register;
+#define LANES_PD(name) _mm256_##name##_pd
 #elif LANES == 8 && defined(__AVX512F__)
+typedef __m512d lanes_register;
+#define LANES_PD(name) _mm512_##name##_pd
+#endif
+
+/* x > y ? x : y and x < y ? x : y, lane by lane. If x or y is a NaN, the result is y. */
 INLINE lanes lanes_max(lanes x, lanes y)
 {
-    return (lanes) _mm512_max_pd((__m512d) x, (__m512d) y);
-}
-INLINE lanes lanes_min(lanes x, lanes y)
-{
-    return (lanes) _mm512_min_pd((__m512d) x, (__m512d) y);
-}
+#if LANES == 1
+    return x > y ? x : y;
+#elif defined(LANES_PD)
+    return (lanes) LANES_PD(max)((lanes_register) x, (lanes_register) y);
 #else
-INLINE lanes lanes_max(lanes x, lanes y)
-{
     const lanes_mask first = x > y;
     return (lanes) ((first & (lanes_mask) x) | (~first & (lanes_mask) y));
+#endif
 }
+
 INLINE lanes lanes_min(lanes x, lanes y)
 {
+#if LANES == 1
+    return x < y ? x : y;
+#elif defined(LANES_PD)
+    return (lanes) LANES_PD(min)((lanes_register) x, (lanes_register) y);
+#else
     const lanes_mask first = x < y;
     return (lanes) ((first & (lanes_mask) x) | (~first & (lanes_mask) y));
-}
 #endif
+}
 
 /* x in all lanes. */
 INLINE lanes lanes_of(double x)
@@ -167,12 +154,10 @@ INLINE unsigned lanes_mask_bits(lanes_mask mask)
 {
 #if LANES == 1
     return (unsigned) mask;
-#elif LANES == 2 && defined(__SSE2__)
-    return (unsigned) _mm_movemask_pd((__m128d) mask);
-#elif LANES == 4 && defined(__AVX__)
-    return (unsigned) _mm256_movemask_pd((__m256d) mask);
 #elif LANES == 8 && defined(__AVX512F__)
     return _mm512_test_epi64_mask((__m512i) mask, (__m512i) mask);
+#elif defined(LANES_PD)
+    return (unsigned) LANES_PD(movemask)((lanes_register) mask);
 #else
     unsigned bits = 0;
     for (int i = 0; i < LANES; i++)
