@@ -26,20 +26,15 @@
  * integers, minors of the matrix, and each step divides by the previous pivot without remainder. */
 #include "certificate_weights.h"
 
+#include "integer.h"
+
 #include <math.h>
 
 static void each(struct certificate_weights *w, void (*call)(mpz_ptr))
 {
-    for (int i = 0; i < WEIGHTS_MAX; i++) {
-        call(w->weight[i].proven);
-        call(w->weight[i].stated);
-    }
-    for (int i = 0; i < WEIGHTS_ROWS; i++)
-        for (int j = 0; j < WEIGHTS_COLUMNS; j++)
-            call(w->row[i][j]);
-    call(w->det);
-    call(w->scratch);
-    call(w->sum);
+    for (int i = 0; i < WEIGHTS_MAX; i++)
+        INTEGER_EACH_FROM(proven, &w->weight[i], call);
+    INTEGER_EACH_FROM(row, w, call);
 }
 
 static struct certificate_weight *find(struct certificate_weights *w, int f, unsigned vertex)

@@ -26,11 +26,11 @@ struct certificate_weights {
     bool rounded;   /* a frame has a radius */
     bool unrounded; /* the weights are stated as proven, over the total of the proof */
     int dim, rows, rank;
+    unsigned long bits;
+    mpq_t time;                                    /* of the point, seconds */
     struct certificate_weight weight[WEIGHTS_MAX]; /* the greatest first */
     mpz_t row[WEIGHTS_ROWS][WEIGHTS_COLUMNS];      /* last two: sum, and the term of the drift */
     mpz_t det, scratch, sum;
-    unsigned long bits;
-    mpq_t time; /* of the point, seconds */
 };
 
 /* Begins to shorten the weights of a complete proof of a pair that meets.

@@ -34,14 +34,10 @@ static int compare_placements(const struct fmb_placement *x, const struct fmb_pl
 {
     const int dim = x->body->dim;
     int order = compare(x->position, y->position, dim);
-    if (order == 0)
-        order = compare(x->velocity, y->velocity, dim);
-    if (order == 0)
-        order = x->orientation_count - y->orientation_count;
-    if (order == 0)
-        order = compare(x->orientation, y->orientation, x->orientation_count);
-    if (order == 0)
-        order = x->end_count - y->end_count;
+    order = order ? order : compare(x->velocity, y->velocity, dim);
+    order = order ? order : x->orientation_count - y->orientation_count;
+    order = order ? order : compare(x->orientation, y->orientation, x->orientation_count);
+    order = order ? order : x->end_count - y->end_count;
     if (order || x->end_count == 0)
         return order;
     order = compare(x->end_position, y->end_position, dim);
@@ -51,18 +47,13 @@ static int compare_placements(const struct fmb_placement *x, const struct fmb_pl
 static int compare_frames(const struct fmb_frame *x, const struct fmb_frame *y)
 {
     int order = (int) x->shape - (int) y->shape;
-    if (order == 0)
-        order = (x->vertex_count > y->vertex_count) - (x->vertex_count < y->vertex_count);
+    order = order ? order : (int) x->vertex_count - (int) y->vertex_count;
     if (order == 0 && x->vertices != y->vertices)
         order = compare(x->vertices, y->vertices, x->dim * (int) x->vertex_stride);
-    if (order == 0)
-        order = compare(x->origin, y->origin, FMB_DIM_MAX);
-    if (order == 0)
-        order = compare(x->centre, y->centre, FMB_DIM_MAX);
-    if (order == 0)
-        order = compare(x->component[0], y->component[0], FMB_COMPONENTS_MAX);
-    if (order == 0)
-        order = compare(x->remainder[0], y->remainder[0], FMB_COMPONENTS_MAX);
+    order = order ? order : compare(x->origin, y->origin, FMB_DIM_MAX);
+    order = order ? order : compare(x->centre, y->centre, FMB_DIM_MAX);
+    order = order ? order : compare(x->component[0], y->component[0], FMB_COMPONENTS_MAX);
+    order = order ? order : compare(x->remainder[0], y->remainder[0], FMB_COMPONENTS_MAX);
     return order ? order : compare(&x->radius, &y->radius, 1);
 }
 
@@ -80,8 +71,7 @@ bool gap_swaps(const struct fmb_placement *a, const struct fmb_placement *b)
 bool gap_frames_swap(const struct placed_frame *a, const struct placed_frame *b)
 {
     int order = compare_placements(a->placement, b->placement);
-    if (order == 0)
-        order = compare_frames(a->frame, b->frame);
+    order = order ? order : compare_frames(a->frame, b->frame);
     return order == 0 ? gap_swaps(a->placement, b->placement) : order > 0;
 }
 
@@ -278,14 +268,10 @@ static void raise(struct fmb_gap *gap, const struct aabb *a, const struct aabb *
 static int compare_gaps(const struct fmb_gap *x, const struct fmb_gap *y)
 {
     int order = compare(&x->bounds[1], &y->bounds[1], 1);
-    if (order == 0)
-        order = (int) y->has_witness - (int) x->has_witness;
-    if (order == 0)
-        order = compare(&x->time, &y->time, 1);
-    if (order == 0)
-        order = compare(x->witness[0], y->witness[0], 2 * FMB_DIM_MAX);
-    if (order == 0)
-        order = compare(x->direction, y->direction, FMB_DIM_MAX);
+    order = order ? order : (int) y->has_witness - (int) x->has_witness;
+    order = order ? order : compare(&x->time, &y->time, 1);
+    order = order ? order : compare(x->witness[0], y->witness[0], 2 * FMB_DIM_MAX);
+    order = order ? order : compare(x->direction, y->direction, FMB_DIM_MAX);
     for (int side = 0; order == 0 && side < 2; side++)
         order = (x->frame[side] > y->frame[side]) - (x->frame[side] < y->frame[side]);
     return order;

@@ -89,9 +89,9 @@ enum { ROWS = 4, QUARTERS = 4, KEPT = 8 };
 /* A point of D, or a mean of points, times QUARTERS. */
 struct point {
     struct support_column column;
+    int end;    /* 4 t / T */
     mpz_t x[3]; /* its coordinates */
     mpz_t a[3]; /* of the point of A at its time, in the world; if a box is wanted */
-    int end;    /* 4 t / T */
 };
 
 /* One placed frame. */
@@ -102,12 +102,6 @@ struct side {
     uint16_t face[FMB_HULL_VERTICES_MAX];
 };
 
-/* A vertex in the world at time 0: the last one used of those with the same index modulo KEPT. */
-struct kept {
-    unsigned number; /* of the vertex, from 1; 0: none */
-    mpz_t at[3];
-};
-
 enum stage { SPANNING_A, SPANNING_B, SPANNING, SHOOTING, RAISING, SHORTENING, NEARING, COMPLETE };
 
 struct programs {
@@ -116,7 +110,9 @@ struct programs {
     enum stage stage;
     struct support_integers integers;
     struct side side[2];
-    struct kept kept[2][KEPT];
+    /* The numbers of the vertices in kept_at, from 1; 0: none. Of the vertices with the same index
+     * modulo KEPT, the one used last is kept. */
+    unsigned kept[2][KEPT];
     bool ends[2];           /* of the window, that the face has */
     bool reduced, touching; /* the face is not all of D; it leaves out vertices */
     bool proves;
@@ -130,14 +126,11 @@ struct programs {
      */
     int rank, attempt;
     struct point span[ROWS];
-    mpz_t edge[2][3];
     int axis[3]; /* [rank]: the coordinates of the projection */
 
     /* Programs. */
     int rows;
     struct point centre, basis[ROWS], entering;
-    mpz_t row[ROWS][ROWS], cofactor[ROWS][ROWS], det, dual[ROWS], coordinate[ROWS], enters[ROWS];
-    mpz_t height[ROWS];
     bool basis_set; /* its rows and cofactors are */
     int target; /* the height: an end of the contact, 0 and 1, or of the box, 2 + 2 axis + end */
 
@@ -148,61 +141,30 @@ struct programs {
     bool simplex_set;
 
     double contact[2], box[2][FMB_DIM_MAX];
+
+    /* Numbers alone from here on. */
+    mpz_t kept_at[2][KEPT][3]; /* vertices in the world at time 0 */
+    mpz_t edge[2][3];          /* of the span */
+    mpz_t row[ROWS][ROWS], cofactor[ROWS][ROWS], det, dual[ROWS], coordinate[ROWS], enters[ROWS];
+    mpz_t height[ROWS];
     mpz_t normal[2][3], body[3], sum, best, scratch[2], denominator, minor[6], vector[3];
 };
 
 /* ---- Memory ---- */
 
-static void vector_each(mpz_t v[3], void (*call)(mpz_ptr))
-{
-    for (int i = 0; i < 3; i++)
-        call(v[i]);
-}
-
-static void point_each(struct point *point, void (*call)(mpz_ptr))
-{
-    vector_each(point->x, call);
-    vector_each(point->a, call);
-}
-
 static void each(struct programs *e, void (*call)(mpz_ptr))
 {
     support_integers_each(&e->integers, call);
-    for (int f = 0; f < 2; f++) {
-        for (int i = 0; i < KEPT; i++)
-            vector_each(e->kept[f][i].at, call);
-        vector_each(e->edge[f], call);
-        vector_each(e->normal[f], call);
-        call(e->scratch[f]);
-    }
     for (int i = 0; i < ROWS; i++) {
-        point_each(&e->span[i], call);
-        point_each(&e->basis[i], call);
-        for (int j = 0; j < ROWS; j++) {
-            call(e->row[i][j]);
-            call(e->cofactor[i][j]);
-        }
-        call(e->dual[i]);
-        call(e->coordinate[i]);
-        call(e->enters[i]);
-        call(e->height[i]);
+        INTEGER_EACH_FROM(x, &e->span[i], call);
+        INTEGER_EACH_FROM(x, &e->basis[i], call);
     }
-    point_each(&e->centre, call);
-    point_each(&e->entering, call);
+    INTEGER_EACH_FROM(x, &e->centre, call);
+    INTEGER_EACH_FROM(x, &e->entering, call);
     if (e->simplex_set)
         integer_simplex_each(&e->simplex, call);
-    vector_each(e->body, call);
-    vector_each(e->vector, call);
-    vector_each(e->proof.normal, call);
-    for (int i = 0; i < PROGRAMS_PROOF_MAX; i++)
-        call(e->proof.weight[i]);
-    call(e->proof.total);
-    for (int i = 0; i < 6; i++)
-        call(e->minor[i]);
-    call(e->det);
-    call(e->denominator);
-    call(e->sum);
-    call(e->best);
+    INTEGER_EACH_FROM(normal, &e->proof, call);
+    INTEGER_EACH_FROM(kept_at, e, call);
 }
 
 /* ---- Points ---- */
@@ -230,22 +192,31 @@ static void set_value(struct programs *e, const struct side *side, unsigned i, m
  * back to the same vertices: they are kept. */
 static mpz_t *place(struct programs *e, int f, unsigned i)
 {
-    struct kept *kept = &e->kept[f][e->stage == RAISING ? i % KEPT : 0];
-    if (kept->number != i + 1)
-        support_integers_place(&e->integers, f, i, kept->at);
-    kept->number = i + 1;
-    return kept->at;
+    const unsigned k = e->stage == RAISING ? i % KEPT : 0;
+    if (e->kept[f][k] != i + 1)
+        support_integers_place(&e->integers, f, i, e->kept_at[f][k]);
+    e->kept[f][k] = i + 1;
+    return e->kept_at[f][k];
+}
+
+/* out := a point of D. */
+static void set_difference(struct programs *e, struct support_column column, mpz_t out[3])
+{
+    mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
+    for (int axis = 0; axis < 3; axis++) {
+        mpz_sub(out[axis], b[axis], a[axis]);
+        if (column.end)
+            mpz_add(out[axis], out[axis], e->integers.drift[axis]);
+    }
 }
 
 static void set_point(struct programs *e, struct support_column column, struct point *out)
 {
-    mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
+    mpz_t *a = place(e, 0, column.vertex[0]);
     out->column = column;
     out->end = column.end ? QUARTERS : 0;
+    set_difference(e, column, out->x);
     for (int axis = 0; axis < 3; axis++) {
-        mpz_sub(out->x[axis], b[axis], a[axis]);
-        if (column.end)
-            mpz_add(out->x[axis], out->x[axis], e->integers.drift[axis]);
         mpz_mul_2exp(out->x[axis], out->x[axis], 2);
         if (!(e->want & FMB_WANT_BOX))
             continue;
@@ -336,12 +307,12 @@ static struct support_column price(struct programs *e, int end_sign, bool reduce
     return out;
 }
 
-/* out := n . v */
-static void dot(mpz_t n[3], mpz_t v[3], mpz_t out)
+/* out := the sum of the products of two vectors of count numbers. */
+static void dot(mpz_t *x, mpz_t *y, int count, mpz_t out)
 {
-    mpz_mul(out, n[0], v[0]);
-    mpz_addmul(out, n[1], v[1]);
-    mpz_addmul(out, n[2], v[2]);
+    mpz_mul(out, x[0], y[0]);
+    for (int i = 1; i < count; i++)
+        mpz_addmul(out, x[i], y[i]);
 }
 
 /* Prices n . x, n = normal[1]. */
@@ -349,7 +320,7 @@ static struct support_column price_difference(struct programs *e, bool reduce)
 {
     for (int axis = 0; axis < 3; axis++)
         mpz_neg(e->normal[0][axis], e->normal[1][axis]);
-    dot(e->normal[1], e->integers.drift, e->sum);
+    dot(e->normal[1], e->integers.drift, 3, e->sum);
     return price(e, mpz_sgn(e->sum), reduce);
 }
 
@@ -400,7 +371,7 @@ static bool extend_span(struct programs *e)
     if (e->rank == 1 || e->rank == 2) {
         mpz_t *normal = e->normal[1];
         integer_cross(normal, e->edge[0], e->rank == 1 ? edge : e->edge[1], e->scratch[0]);
-        dot(normal, edge, e->sum);
+        dot(normal, edge, 3, e->sum);
         if (e->rank == 1 ? integer_is_zero(normal) : mpz_sgn(e->sum) == 0)
             return false;
     }
@@ -419,8 +390,8 @@ static bool is_constant(struct programs *e)
 {
     for (int sign = 0; sign < 2; sign++) {
         set_point(e, price_difference(e, false), &e->entering);
-        dot(e->normal[1], e->entering.x, e->best);
-        dot(e->normal[1], e->span[0].x, e->sum);
+        dot(e->normal[1], e->entering.x, 3, e->best);
+        dot(e->normal[1], e->span[0].x, 3, e->sum);
         if (mpz_cmp(e->best, e->sum) != 0)
             return !extend_span(e);
         for (int axis = 0; axis < 3; axis++)
@@ -451,8 +422,7 @@ static bool span_step(struct programs *e)
         extend_span(e);
     }
     if (e->rank < 0) {
-        static const struct support_column some = {{0, 0}, 0};
-        set_point(e, column_in_face(e, some), &e->entering);
+        set_point(e, column_in_face(e, (struct support_column){{0, 0}, 0}), &e->entering);
         extend_span(e);
     }
     if (e->rank == e->pair->dim || !set_orthogonal(e))
@@ -486,7 +456,7 @@ static bool project(struct programs *e)
         integer_cross(n, u, e->edge[1], e->scratch[0]);
         for (dropped = 2; mpz_sgn(n[dropped]) == 0;)
             dropped--;
-        dot(n, x, e->sum);
+        dot(n, x, 3, e->sum);
     }
     for (int axis = 0; axis < 3; axis++) {
         if (axis != dropped)
@@ -527,14 +497,6 @@ static void expand(mpz_t row[ROWS], mpz_t minor[6], int sign, mpz_t out[ROWS])
     }
 }
 
-/* out := the sum of the products of two vectors of rows numbers. */
-static void dot_rows(const struct programs *e, mpz_t x[ROWS], mpz_t y[ROWS], mpz_t out)
-{
-    mpz_mul(out, x[0], y[0]);
-    for (int i = 1; i < e->rows; i++)
-        mpz_addmul(out, x[i], y[i]);
-}
-
 /* Sets cofactor and det of the rows, det > 0. */
 static void set_cofactors(struct programs *e)
 {
@@ -557,7 +519,7 @@ static void set_cofactors(struct programs *e)
         expand(h[3], e->minor, 1, c[2]);
         expand(h[2], e->minor, -1, c[3]);
     }
-    dot_rows(e, c[0], h[0], e->det);
+    dot(c[0], h[0], e->rows, e->det);
     if (mpz_sgn(e->det) > 0)
         return;
     mpz_neg(e->det, e->det);
@@ -613,7 +575,7 @@ static void set_basis(struct programs *e)
     set_cofactors(e);
     set_goal(e, goal);
     for (int i = 0; i < e->rows; i++)
-        dot_rows(e, e->cofactor[i], goal, e->coordinate[i]);
+        dot(e->cofactor[i], goal, e->rows, e->coordinate[i]);
 }
 
 /* Replaces a column of the basis by the entering one. */
@@ -622,7 +584,7 @@ static void pivot(struct programs *e)
     int leaving = -1;
     set_row(e, &e->entering, e->dual); /* dual is not needed any more */
     for (int i = 0; i < e->rows; i++)
-        dot_rows(e, e->cofactor[i], e->dual, e->enters[i]);
+        dot(e->cofactor[i], e->dual, e->rows, e->enters[i]);
     for (int i = 0; i < e->rows; i++)
         if (mpz_sgn(e->enters[i]) > 0 && (leaving < 0 || leaves_before(e, i, leaving)))
             leaving = i;
@@ -686,7 +648,7 @@ static bool set_signs(struct programs *e, int sign[ROWS])
     integer_cross(e->normal[1], e->span[2].x, e->span[3].x, e->scratch[0]);
     mpz_set_ui(e->best, 0);
     for (int i = 0; i < ROWS; i++) {
-        dot(e->normal[i < 2], e->span[other[i]].x, e->sum);
+        dot(e->normal[i < 2], e->span[other[i]].x, 3, e->sum);
         if (i % 2)
             mpz_neg(e->sum, e->sum);
         mpz_add(e->best, e->best, e->sum);
@@ -768,7 +730,7 @@ static void shorten_step(struct programs *e)
         mpz_neg(e->normal[1][axis], e->normal[1][axis]);
     }
     set_point(e, price_difference(e, false), &e->entering);
-    dot(e->normal[1], e->entering.x, e->sum);
+    dot(e->normal[1], e->entering.x, 3, e->sum);
     e->attempt *= 2;
     if (mpz_sgn(e->sum) >= 0)
         return;
@@ -783,8 +745,8 @@ static void prove_touching(struct programs *e)
 {
     struct programs_proof *proof = &e->proof;
     mpz_t *n = e->normal[1];
-    dot(n, e->integers.drift, e->sum);
-    dot(proof->normal, e->integers.drift, e->best);
+    dot(n, e->integers.drift, 3, e->sum);
+    dot(proof->normal, e->integers.drift, 3, e->best);
     for (int axis = 0; axis < 3 && mpz_sgn(e->sum) * mpz_sgn(e->best) < 0; axis++) {
         mpz_abs(e->scratch[0], e->best);
         mpz_mul(n[axis], n[axis], e->scratch[0]);
@@ -837,7 +799,7 @@ static void shoot_step(struct programs *e)
         for (int i = 0; i < e->rows; i++)
             mpz_add(e->normal[1][e->axis[j]], e->normal[1][e->axis[j]], e->cofactor[i][j]);
     set_point(e, price_difference(e, false), &e->entering);
-    dot(e->normal[1], e->entering.x, e->sum);
+    dot(e->normal[1], e->entering.x, 3, e->sum);
     if (mpz_sgn(e->sum) < 0)
         finish_separated(e);
     else if (mpz_sgn(e->sum) == 0 && beyond == 0)
@@ -907,7 +869,7 @@ static void prove_overlapping(struct programs *e)
         }
         positive = 0;
         for (int i = 0; i < e->rows; i++) {
-            dot_rows(e, e->cofactor[i], goal, proof->weight[i]);
+            dot(e->cofactor[i], goal, e->rows, proof->weight[i]);
             positive += mpz_sgn(proof->weight[i]) > 0;
         }
     }
@@ -1047,7 +1009,7 @@ static void height_step(struct programs *e)
         mpz_set(e->normal[0][e->axis[j]], e->dual[j]);
     }
     /* What the end of the window adds, in units of 1 / det. */
-    dot(e->normal[1], e->integers.drift, e->sum);
+    dot(e->normal[1], e->integers.drift, 3, e->sum);
     mpz_set(e->scratch[0], e->det);
     if (target_sign(e) < 0)
         mpz_neg(e->scratch[0], e->scratch[0]);
@@ -1060,7 +1022,7 @@ static void height_step(struct programs *e)
     }
     set_point(e, price(e, mpz_sgn(e->sum), false), &e->entering);
     set_row(e, &e->entering, e->enters);
-    dot_rows(e, e->dual, e->enters, e->sum);
+    dot(e->dual, e->enters, e->rows, e->sum);
     set_height(e, &e->entering, e->best);
     mpz_mul(e->scratch[0], e->best, e->det);
     if (mpz_cmp(e->scratch[0], e->sum) > 0)
@@ -1076,13 +1038,8 @@ static void height_step(struct programs *e)
 
 static void set_corner(struct programs *e, struct support_column column, struct integer_corner *out)
 {
-    mpz_t *a = place(e, 0, column.vertex[0]), *b = place(e, 1, column.vertex[1]);
     out->column = column;
-    for (int axis = 0; axis < 3; axis++) {
-        mpz_sub(out->at[axis], b[axis], a[axis]);
-        if (column.end)
-            mpz_add(out->at[axis], out->at[axis], e->integers.drift[axis]);
-    }
+    set_difference(e, column, out->at);
 }
 
 static void nearest_corner(void *context, mpz_t n[3], struct integer_corner *out)
@@ -1111,7 +1068,7 @@ static void prove_by_nearest(struct programs *e)
         for (int i = 0; i < simplex->count; i++)
             mpz_addmul(e->vector[axis], simplex->weight[i], simplex->corner[i]->at[axis]);
     }
-    dot(e->vector, e->vector, e->best);
+    dot(e->vector, e->vector, 3, e->best);
     mpz_mul(e->sum, e->integers.radius, simplex->total);
     mpz_mul(e->sum, e->sum, e->sum);
     const int order = mpz_cmp(e->best, e->sum);

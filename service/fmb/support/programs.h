@@ -28,16 +28,16 @@ enum { PROGRAMS_PROOF_MAX = 2 * (FMB_DIM_MAX + 1) + FMB_DIM_MAX };
 
 struct programs_proof {
     enum fmb_verdict verdict;
+    struct support_integers *integers; /* of the pair */
+    unsigned count;
+    struct support_column column[PROGRAMS_PROOF_MAX]; /* the points that have weights */
     /* SEPARATED: normal . x > 0 for all x of D. TOUCHING: normal . x >= 0, and normal . x is not
      * constant on both frames. */
     mpz_t normal[3];
     /* Not SEPARATED: the sum of weight / total times points of D is the origin. Weights are at
      * least 0, and their sum is total. OVERLAPPING: the vertices of positive weights span both
      * frames. */
-    unsigned count;
-    struct support_column column[PROGRAMS_PROOF_MAX];
     mpz_t weight[PROGRAMS_PROOF_MAX], total;
-    struct support_integers *integers; /* of the pair */
 };
 
 /* Begins a decision. It allocates through GMP; programs_end() frees all of it.

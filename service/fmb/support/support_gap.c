@@ -205,10 +205,9 @@ static enum gap_outcome set_deepest(const struct support_gap *gap, bool bounded,
 
 /* ---- Pairs ---- */
 
-/* A pair in the order of support_order(). It points into itself. */
+/* It points into itself. */
 struct support_gap_work {
-    struct frame_pair frames;
-    struct support_pair pair;
+    const struct support_pair *pair;
     bool swapped;
     enum fmb_verdict verdict, of_pair; /* of the cores, and of the pair */
     double farthest;
@@ -417,7 +416,7 @@ static enum gap_outcome solve_at_once(const struct support_gap *gap,
 static void begin_placing(struct support_gap_work *work)
 {
     work->stage = GAP_PLACING;
-    support_placed_begin(&work->pair, &work->placed);
+    support_placed_begin(work->pair, &work->placed);
 }
 
 enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapped,
@@ -442,18 +441,15 @@ enum gap_outcome support_gap_of_pair(const struct support_pair *pair, bool swapp
     if (!work)
         return GAP_UNSURE;
     struct support_gap_work *begun = memory_allocate(sizeof *begun);
-    begun->frames = *pair->frames;
+    begun->pair = pair;
     begun->swapped = swapped;
     begun->verdict = cores;
     begun->of_pair = verdict;
     begun->farthest = farthest;
     begun->flat = false;
-    support_pair_set(&begun->frames, &begun->pair);
-    if (pair->posed)
-        support_pair_pose(pair, &begun->pair);
     if (late) {
         begun->stage = GAP_DEPTH;
-        set_gap(&begun->pair, &begun->gap);
+        set_gap(pair, &begun->gap);
         support_depth_begin(&begun->depth, &begun->gap, nearest);
     } else {
         begin_placing(begun);
@@ -474,7 +470,8 @@ static void begin_placed(struct support_gap_work *work)
 {
     /* scale_lengths() lowers the bound by at most 1.5 * 2^-1074. */
     const double farthest = ldexp(work->farthest + 2 * 0x1p-1074, (int) -work->placed.exponent);
-    work->gap = (struct support_gap){.pair = &work->placed.pair, .duration = work->frames.duration};
+    work->gap =
+        (struct support_gap){.pair = &work->placed.pair, .duration = work->pair->frames->duration};
     memcpy(work->gap.displacement, work->placed.displacement, sizeof work->gap.displacement);
     set_bounds(&work->gap, work->placed.least);
     if (work->placed.least == 0)
@@ -491,7 +488,7 @@ static enum gap_outcome solve_placed(struct support_gap_work *work, struct fmb_g
     if (work->placed.least == 0) { /* two points at the origin of the world */
         memset(out, 0, sizeof *out);
         out->direction[0] = 1;
-        out->has_witness = has_deepest(&work->pair, work->of_pair);
+        out->has_witness = has_deepest(work->pair, work->of_pair);
         return GAP_KNOWN;
     }
     const enum gap_outcome outcome =
@@ -527,9 +524,9 @@ enum gap_outcome support_gap_step(struct support_gap_work *work, struct fmb_gap 
         return GAP_UNSURE;
     const bool scaled = work->stage != GAP_DEPTH && work->placed.least > 0;
     const int exponent = scaled ? (int) work->placed.exponent : 0;
-    if (outcome == GAP_KNOWN && work->pair.rounded)
-        support_round_gap(&work->frames, exponent, work->of_pair,
-                          has_deepest(&work->pair, work->of_pair), out);
+    if (outcome == GAP_KNOWN && work->pair->rounded)
+        support_round_gap(work->pair->frames, exponent, work->of_pair,
+                          has_deepest(work->pair, work->of_pair), out);
     if (outcome == GAP_KNOWN && scaled)
         scale_lengths(out, exponent);
     complete(outcome, work->swapped, out);

@@ -85,7 +85,8 @@ bool support_common_point(const struct support_pair *pair, const struct support_
 
 /* The gap of a pair in the order of support_order(), in steps of less than a millisecond.
  *
- * In:  swapped   what support_order() returned
+ * In:  pair      unchanged until the last step
+ *      swapped   what support_order() returned
  *      nearest   the result of a search up to INFINITY, or NULL
  *      cores     the verdict of the frames without their radii; may be OVERLAPPING for cores that
  *                touch, if the frames have radii: the direction then proves the lower bound

@@ -5,21 +5,11 @@
 
 void support_integers_each(struct support_integers *integers, void (*call)(mpz_ptr))
 {
-    call(integers->scale);
-    call(integers->radius);
     for (int f = 0; f < 2; f++) {
-        struct support_side *side = &integers->side[f];
-        INTEGER_EACH_FROM(row, &side->turn, call);
-        call(side->factor);
-        for (int axis = 0; axis < 3; axis++) {
-            call(side->position[axis]);
-            call(side->displacement[axis]);
-            for (int i = 0; i < SUPPORT_SMALL; i++)
-                call(side->small[i][axis]);
-        }
+        INTEGER_EACH_FROM(row, &integers->side[f].turn, call);
+        INTEGER_EACH_FROM(factor, &integers->side[f], call);
     }
-    for (int axis = 0; axis < 3; axis++)
-        call(integers->drift[axis]);
+    INTEGER_EACH_FROM(scale, integers, call);
 }
 
 /* ---- Orientations ----
@@ -166,39 +156,26 @@ void support_integers_path(const struct fmb_placement *placement, double duratio
             integer_set_product(out[axis], dyadic_of(placement->velocity[axis]), window, unit);
 }
 
-/* Sets a frame in its pose at a fraction of the window. All lengths of the pair there are multiples
- * of 2^integers->unit. */
-static void set_posed(const struct frame_pair *frames, double at,
-                      const struct support_integers *integers, struct support_side *side)
-{
-    const struct fmb_placement *placement =
-        side == &integers->side[0] ? frames->a.placement : frames->b.placement;
-    const struct dyadic late = dyadic_of(at);
-    mpz_t path[3];
-    mpz_inits(path[0], path[1], path[2], NULL);
-    support_integers_path(placement, frames->duration, integers->unit, path);
-    for (int axis = 0; axis < side->frame->dim; axis++) {
-        mpz_mul_si(path[axis], path[axis], late.mantissa);
-        if (late.mantissa)
-            mpz_fdiv_q_2exp(path[axis], path[axis], (mp_bitcnt_t) -late.exponent);
-        integer_set(side->position[axis], dyadic_of(placement->position[axis]), integers->unit);
-        mpz_add(side->position[axis], side->position[axis], path[axis]);
-        mpz_mul(side->position[axis], side->position[axis], integers->scale);
-    }
-    if (side->frame->shape != FMB_HULL)
-        set_small(side, integers->unit);
-    mpz_clears(path[0], path[1], path[2], NULL);
-}
-
-static void set_side(const struct fmb_placement *placement, const struct dyadic window,
+/* Sets a frame, as support_integers_set() does. All lengths of the pair are multiples of
+ * 2^integers->unit. */
+static void set_side(const struct fmb_placement *placement, double duration, bool posed, double at,
                      const struct support_integers *integers, struct support_side *side)
 {
+    const struct dyadic late = dyadic_of(at);
+    if (posed || placement->end_count == 0)
+        support_integers_path(placement, duration, integers->unit, side->displacement);
     for (int axis = 0; axis < side->frame->dim; axis++) {
-        integer_set(side->position[axis], dyadic_of(placement->position[axis]), integers->unit);
-        mpz_mul(side->position[axis], side->position[axis], integers->scale);
-        integer_set_product(side->displacement[axis], dyadic_of(placement->velocity[axis]), window,
-                            integers->unit);
-        mpz_mul(side->displacement[axis], side->displacement[axis], integers->scale);
+        mpz_ptr position = side->position[axis], way = side->displacement[axis];
+        integer_set(position, dyadic_of(placement->position[axis]), integers->unit);
+        if (posed) {
+            mpz_mul_si(way, way, late.mantissa);
+            if (late.mantissa)
+                mpz_fdiv_q_2exp(way, way, (mp_bitcnt_t) -late.exponent);
+            mpz_add(position, position, way);
+            mpz_set_ui(way, 0);
+        }
+        mpz_mul(position, position, integers->scale);
+        mpz_mul(way, way, integers->scale);
     }
     if (side->frame->shape != FMB_HULL)
         set_small(side, integers->unit);
@@ -236,10 +213,7 @@ void support_integers_set(const struct frame_pair *frames, bool posed, double at
             mpz_set_ui(side[f].factor, 1);
         else
             mpz_set(side[f].factor, side[!f].turn.norm);
-        if (posed)
-            set_posed(frames, at, out, &side[f]);
-        else
-            set_side(placed[f]->placement, dyadic_of(frames->duration), out, &side[f]);
+        set_side(placed[f]->placement, frames->duration, posed, at, out, &side[f]);
     }
     integer_set_sum(out->radius, frames->a.frame->radius, frames->b.frame->radius, out->unit);
     mpz_mul(out->radius, out->radius, out->scale);

@@ -21,14 +21,14 @@ struct support_side {
     mpz_t factor; /* of vectors that are turned */
     mpz_t position[3];
     mpz_t displacement[3]; /* v T */
-    mpz_t small[SUPPORT_SMALL]
-               [3]; /* vertices in body coordinates, over 2^unit, unless it is a hull */
+    /* Vertices in body coordinates, over 2^unit, unless it is a hull. */
+    mpz_t small[SUPPORT_SMALL][3];
 };
 
 struct support_integers {
     long unit;
-    mpz_t scale;
     struct support_side side[2];
+    mpz_t scale;
     mpz_t drift[3]; /* over the window */
     mpz_t radius;   /* the sum of both radii */
 };

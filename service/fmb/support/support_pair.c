@@ -162,21 +162,6 @@ void support_pair_set(const struct frame_pair *frames, struct support_pair *out)
     out->radius[1] = sum * (1 + 0x1p-52);
 }
 
-void support_pair_pose(const struct support_pair *posed, struct support_pair *out)
-{
-    for (int f = 0; f < 2; f++)
-        out->view[f].rotation = posed->view[f].rotation;
-    memcpy(out->offset, posed->offset, sizeof out->offset);
-    memcpy(out->drift, posed->drift, sizeof out->drift);
-    memcpy(out->position, posed->position, sizeof out->position);
-    out->drifts = posed->drifts;
-    out->posed = posed->posed;
-    out->usable = posed->usable;
-    out->at = posed->at;
-    out->reach = posed->reach;
-    out->error = posed->error;
-}
-
 double support_farthest(const struct support_pair *pair, const double n[FMB_DIM_MAX],
                         struct support_column *column)
 {

@@ -82,10 +82,6 @@ struct support_pair {
 /* Sets a checked pair. It points to frames and into itself: not to be copied. */
 void support_pair_set(const struct frame_pair *frames, struct support_pair *out);
 
-/* Copies the pose of a pair to another pair of the same frames, which support_pair_set() has set.
- */
-void support_pair_pose(const struct support_pair *posed, struct support_pair *out);
-
 /* A point of D by number: vertex of A, vertex of B, and the end of the window, 0 or 1. The end is 0
  * if the pair does not drift. */
 struct support_column {

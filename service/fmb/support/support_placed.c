@@ -80,10 +80,7 @@ static size_t bytes_of(const struct support_vertices *vertices)
 static void numbers_each(struct support_placed *placed, void (*call)(mpz_ptr))
 {
     support_integers_each(&placed->integers, call);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        call(placed->at[axis]);
-    call(placed->scratch[0]);
-    call(placed->scratch[1]);
+    INTEGER_EACH_FROM(at, placed, call);
 }
 
 void support_placed_begin(const struct support_pair *pair, struct support_placed *out)
