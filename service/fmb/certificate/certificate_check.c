@@ -38,6 +38,17 @@ void check_each(void *numbers, size_t bytes, void (*call)(mpq_ptr))
         call(&number[i]);
 }
 
+struct check_scope check_enter(void *numbers, size_t bytes)
+{
+    check_each(numbers, bytes, mpq_init);
+    return (struct check_scope){numbers, bytes};
+}
+
+void check_leave(struct check_scope *scope)
+{
+    check_each(scope->numbers, scope->bytes, mpq_clear);
+}
+
 void check_copy(mpq_t out[AXES], mpq_t v[AXES])
 {
     for (int axis = 0; axis < AXES; axis++)
@@ -52,14 +63,12 @@ void check_add(mpq_t out[AXES], mpq_t v[AXES])
 
 void check_add_numbers(mpq_t out[AXES], int dim, const double *v)
 {
-    mpq_t number;
-    mpq_init(number);
+    CHECK_NUMBER(number);
     for (int axis = 0; axis < dim; axis++)
         if (v[axis] != 0) {
             mpq_set_d(number, v[axis]);
             mpq_add(out[axis], out[axis], number);
         }
-    mpq_clear(number);
 }
 
 void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
@@ -70,39 +79,33 @@ void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
 
 void check_add_multiple(mpq_t *out, const mpq_t factor, mpq_t *v, int numbers)
 {
-    mpq_t product;
-    mpq_init(product);
+    CHECK_NUMBER(product);
     for (int i = 0; i < numbers; i++) {
         mpq_mul(product, factor, v[i]);
         mpq_add(out[i], out[i], product);
     }
-    mpq_clear(product);
 }
 
 static void dot(mpq_t out, mpq_t u[AXES], mpq_t v[AXES])
 {
-    mpq_t product;
-    mpq_init(product);
+    CHECK_NUMBER(product);
     mpq_set_ui(out, 0, 1);
     for (int axis = 0; axis < AXES; axis++) {
         mpq_mul(product, u[axis], v[axis]);
         mpq_add(out, out, product);
     }
-    mpq_clear(product);
 }
 
 /* out is neither u nor v. */
 static void cross(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES])
 {
-    mpq_t product;
-    mpq_init(product);
+    CHECK_NUMBER(product);
     for (int i = 0; i < AXES; i++) {
         int j = (i + 1) % AXES, k = (i + 2) % AXES;
         mpq_mul(out[i], u[j], v[k]);
         mpq_mul(product, u[k], v[j]);
         mpq_sub(out[i], out[i], product);
     }
-    mpq_clear(product);
 }
 
 /* ---- The pair ---- */
@@ -120,12 +123,14 @@ static void proof_each(struct check_proof *proof, void (*call)(mpq_ptr))
 
 void check_turn(struct check_side *side, bool back, mpq_t v[AXES])
 {
-    mpq_t norm, along, product, cross_of_v[AXES], out[AXES], *const q = side->orientation;
+    mpq_t *const q = side->orientation;
     if (side->placement->orientation_count == 0)
         return;
-    mpq_inits(norm, along, product, NULL);
-    check_each(cross_of_v, sizeof cross_of_v, mpq_init);
-    check_each(out, sizeof out, mpq_init);
+    CHECK_NUMBER(norm);
+    CHECK_NUMBER(along);
+    CHECK_NUMBER(product);
+    CHECK_VECTOR(cross_of_v);
+    CHECK_VECTOR(out);
 
     /* With r = (x, y, z): n R v = (ww - r.r) v + 2 (r.v) r + 2 w (r x v), n = ww + r.r. */
     dot(norm, q + 1, q + 1);
@@ -144,10 +149,6 @@ void check_turn(struct check_side *side, bool back, mpq_t v[AXES])
     mpq_add(norm, norm, product);
     for (int axis = 0; axis < AXES; axis++)
         mpq_div(v[axis], out[axis], norm);
-
-    check_each(out, sizeof out, mpq_clear);
-    check_each(cross_of_v, sizeof cross_of_v, mpq_clear);
-    mpq_clears(norm, along, product, NULL);
 }
 
 /* Sets origin and components of a frame that is not a hull, in body coordinates. The origin of a
@@ -155,8 +156,7 @@ void check_turn(struct check_side *side, bool back, mpq_t v[AXES])
 static void set_frame(struct check_side *side)
 {
     const struct fmb_frame *frame = side->frame;
-    mpq_t half;
-    mpq_init(half);
+    CHECK_NUMBER(half);
     side->count = frame->count;
     side->simplex = frame->shape == FMB_TETRAHEDRON || frame->shape == FMB_FACE;
     for (int i = 0; i < side->count; i++) {
@@ -169,7 +169,6 @@ static void set_frame(struct check_side *side)
         mpq_div_2exp(half, side->edge[i][i], 1);
         mpq_sub(side->origin[i], side->origin[i], half);
     }
-    mpq_clear(half);
 }
 
 /* Sets the quaternion of an orientation; without one, (1, 0, 0, 0). */
@@ -186,8 +185,8 @@ static void set_late(struct check_side *side, const mpq_t duration)
 {
     const struct fmb_placement *placement = side->placement;
     const bool ends = placement->end_count != 0;
-    mpq_t product, sum;
-    mpq_inits(product, sum, NULL);
+    CHECK_NUMBER(product);
+    CHECK_NUMBER(sum);
     check_add_numbers(side->late_position, side->frame->dim,
                       ends ? placement->end_position : placement->position);
     check_add_multiple(side->late_position, duration, side->velocity, AXES);
@@ -200,7 +199,6 @@ static void set_late(struct check_side *side, const mpq_t duration)
     }
     for (int i = 0; i < 4 && mpq_sgn(sum) < 0; i++)
         mpq_neg(side->late_orientation[i], side->late_orientation[i]);
-    mpq_clears(product, sum, NULL);
 }
 
 static void set_side(struct check_side *side, const struct fmb_placement *placement)
@@ -216,22 +214,19 @@ static void set_side(struct check_side *side, const struct fmb_placement *placem
 
 void check_between(mpq_t *out, mpq_t *x, mpq_t *y, const mpq_t s, int count)
 {
-    mpq_t product;
-    mpq_init(product);
+    CHECK_NUMBER(product);
     for (int i = 0; i < count; i++) {
         mpq_sub(product, y[i], x[i]);
         mpq_mul(product, product, s);
         mpq_add(out[i], x[i], product);
     }
-    mpq_clear(product);
 }
 
 /* Sets the poses of a pair that turns at the time of the proof, which is in the window. A frame
  * without an end keeps its pose and velocity. */
 static void set_pose(struct check_proof *proof)
 {
-    mpq_t s;
-    mpq_init(s);
+    CHECK_NUMBER(s);
     mpq_div(s, proof->time, proof->duration);
     for (int f = 0; f < 2; f++) {
         struct check_side *side = &proof->side[f];
@@ -240,7 +235,6 @@ static void set_pose(struct check_proof *proof)
         check_between(side->orientation, side->orientation, side->late_orientation, s, 4);
         check_between(side->position, side->position, side->late_position, s, AXES);
     }
-    mpq_clear(s);
 }
 
 static bool is_zero_vector(mpq_t v[AXES])
@@ -261,12 +255,10 @@ static void set_pair(struct check_proof *proof, const struct fmb_placement *a,
     for (int f = 0; f < 2 && proof->turning; f++)
         set_late(&proof->side[f], proof->duration);
     check_subtract(proof->v, proof->side[1].velocity, proof->side[0].velocity);
-    mpq_t other;
-    mpq_init(other);
+    CHECK_NUMBER(other);
     mpq_set_d(proof->radius, proof->side[0].frame->radius);
     mpq_set_d(other, proof->side[1].frame->radius);
     mpq_add(proof->radius, proof->radius, other);
-    mpq_clear(other);
     proof->rounded = mpq_sgn(proof->radius) != 0;
 }
 
@@ -293,10 +285,7 @@ void check_vertex(struct check_side *side, unsigned k, mpq_t out[AXES])
             check_add(out, side->edge[i]);
 }
 
-/* ---- The text ----
- *
- * Each of these takes something from the beginning of *at, and returns false if that does not
- * begin so; *at is then somewhere within the text. */
+/* ---- The text ---- */
 
 bool check_take(const char **at, const char *word)
 {
@@ -342,12 +331,9 @@ static bool take_denominator(const char **at, mpz_t out)
 
 static bool in_lowest_terms(const mpq_t x)
 {
-    mpz_t divisor;
-    mpz_init(divisor);
-    mpz_gcd(divisor, mpq_numref(x), mpq_denref(x));
-    bool lowest = mpz_cmp_ui(divisor, 1) == 0;
-    mpz_clear(divisor);
-    return lowest;
+    CHECK_NUMBER(divisor);
+    mpz_gcd(mpq_numref(divisor), mpq_numref(x), mpq_denref(x));
+    return mpz_cmp_ui(mpq_numref(divisor), 1) == 0;
 }
 
 bool check_take_number(const char **at, mpq_t out)
@@ -397,26 +383,15 @@ static const char *flaw_of_text(struct check_proof *proof, enum fmb_verdict verd
 
 /* ---- The normal ---- */
 
-/* Adds N . position to the values of the normal over a frame in body coordinates. */
-static void add_position(struct check_proof *proof, struct check_side *side)
-{
-    mpq_t value;
-    mpq_init(value);
-    dot(value, proof->normal[0], side->position);
-    mpq_add(side->low, side->low, value);
-    mpq_add(side->high, side->high, value);
-    mpq_clear(value);
-}
-
 /* Sets the least and the greatest value of the normal N over a frame. N . R v is (R^-1 N) . v. The
  * value at a vertex that is a sum of vectors is the sum of their values. */
 static void set_range(struct check_proof *proof, struct check_side *side)
 {
-    mpq_t normal[AXES], vertex[AXES], of_edge[AXES], of_origin, value;
-    mpq_inits(of_origin, value, NULL);
-    check_each(normal, sizeof normal, mpq_init);
-    check_each(vertex, sizeof vertex, mpq_init);
-    check_each(of_edge, sizeof of_edge, mpq_init);
+    CHECK_NUMBER(of_origin);
+    CHECK_NUMBER(value);
+    CHECK_VECTOR(normal);
+    CHECK_VECTOR(vertex);
+    CHECK_VECTOR(of_edge);
     check_copy(normal, proof->normal[0]);
     check_turn(side, true, normal);
     dot(of_origin, normal, side->origin);
@@ -437,11 +412,9 @@ static void set_range(struct check_proof *proof, struct check_side *side)
         if (k == 0 || mpq_cmp(value, side->high) > 0)
             mpq_set(side->high, value);
     }
-    add_position(proof, side);
-    check_each(of_edge, sizeof of_edge, mpq_clear);
-    check_each(vertex, sizeof vertex, mpq_clear);
-    check_each(normal, sizeof normal, mpq_clear);
-    mpq_clears(of_origin, value, NULL);
+    dot(value, proof->normal[0], side->position);
+    mpq_add(side->low, side->low, value);
+    mpq_add(side->high, side->high, value);
 }
 
 /* The least N . (b - a): low_b - high_a at the beginning of the window; N . v T is what it grows by
@@ -449,8 +422,8 @@ static void set_range(struct check_proof *proof, struct check_side *side)
 static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict verdict)
 {
     struct check_side *a = &proof->side[0], *b = &proof->side[1];
-    mpq_t gap, growth;
-    mpq_inits(gap, growth, NULL);
+    CHECK_NUMBER(gap);
+    CHECK_NUMBER(growth);
     set_range(proof, a);
     set_range(proof, b);
     mpq_sub(gap, b->low, a->high);
@@ -468,8 +441,6 @@ static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict ve
     } else if (proof->rounded) {
         sign = -1;
     }
-    mpq_clears(gap, growth, NULL);
-
     if (verdict == FMB_SEPARATED)
         return sign > 0 ? NULL : "the normal does not hold the frames apart all the time";
     if (sign < 0)

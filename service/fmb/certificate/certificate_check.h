@@ -56,6 +56,24 @@ struct check_proof {
  * which holds nothing else. */
 void check_each(void *numbers, size_t bytes, void (*call)(mpq_ptr));
 
+/* CHECK_NUMBER(x) and CHECK_VECTOR(v) declare a number and a vector, 0 at first, that are cleared
+ * where their scope ends. */
+struct check_scope {
+    void *numbers;
+    size_t bytes;
+};
+struct check_scope check_enter(void *numbers, size_t bytes);
+void check_leave(struct check_scope *scope);
+#define CHECK_SCOPE(name)                                                \
+    __attribute__((cleanup(check_leave))) struct check_scope name##_is = \
+        check_enter(name, sizeof name)
+#define CHECK_NUMBER(name) \
+    mpq_t name;            \
+    CHECK_SCOPE(name)
+#define CHECK_VECTOR(name) \
+    mpq_t name[AXES];      \
+    CHECK_SCOPE(name)
+
 void check_copy(mpq_t out[AXES], mpq_t v[AXES]);
 void check_add(mpq_t out[AXES], mpq_t v[AXES]); /* out := out + v */
 void check_subtract(mpq_t out[AXES], mpq_t u[AXES], mpq_t v[AXES]);

@@ -107,9 +107,9 @@ static void turn(struct rows *rows, row q[4], bool back, row v[AXES], row out[AX
 /* Sets the rows of both poses over an interval. */
 static void set_poses(struct check_proof *proof, mpq_t end[2], struct rows *rows)
 {
-    mpq_t q[4], position[AXES];
-    check_each(q, sizeof q, mpq_init);
-    check_each(position, sizeof position, mpq_init);
+    mpq_t q[4];
+    CHECK_SCOPE(q);
+    CHECK_VECTOR(position);
     for (int e = 0; e < 2; e++) {
         mpq_set_ui(rows->up[e], 1, 1);
         for (int f = 0; f < 2; f++) {
@@ -127,8 +127,6 @@ static void set_poses(struct check_proof *proof, mpq_t end[2], struct rows *rows
         for (int i = 0; i < 4; i++)
             add_product(rows, rows->square[f], 1, rows->q[f][i], rows->q[f][i]);
     add_product(rows, rows->squares, 1, rows->square[0], rows->square[1]);
-    check_each(position, sizeof position, mpq_clear);
-    check_each(q, sizeof q, mpq_clear);
 }
 
 /* Sets n: fixed in frame `of`, or the product if of = 2. */
@@ -235,8 +233,9 @@ static int take_direction(const char **at, struct check_proof *proof)
 const char *check_flaw_of_intervals(const char *at, struct check_proof *proof)
 {
     const char *flaw = NULL;
-    mpq_t covered, end[2];
-    mpq_inits(covered, end[0], end[1], NULL);
+    mpq_t end[2];
+    CHECK_SCOPE(end);
+    CHECK_NUMBER(covered);
     do {
         const bool good = check_take(&at, " from ") && check_take_number(&at, end[0]) &&
                           check_take(&at, " to ") && check_take_number(&at, end[1]);
@@ -253,6 +252,5 @@ const char *check_flaw_of_intervals(const char *at, struct check_proof *proof)
     } while (!flaw && *at != '\0');
     if (!flaw && mpq_cmp_ui(covered, 1, 1) != 0)
         flaw = "the intervals end before the window";
-    mpq_clears(covered, end[0], end[1], NULL);
     return flaw;
 }

@@ -18,14 +18,12 @@
 static void span_add(struct check_span *span, mpq_t v[AXES])
 {
     int pivot = 0;
-    mpq_t factor;
-    mpq_init(factor);
+    CHECK_NUMBER(factor);
     for (int i = 0; i < span->rank; i++) {
         mpq_div(factor, v[span->pivot[i]], span->vector[i][span->pivot[i]]);
         mpq_neg(factor, factor);
         check_add_multiple(v, factor, span->vector[i], AXES);
     }
-    mpq_clear(factor);
     while (pivot < AXES && mpq_sgn(v[pivot]) == 0)
         pivot++;
     if (pivot == AXES)
@@ -54,20 +52,18 @@ static bool take_weights_of(const char **at, const char *letter, struct check_pr
 {
     struct check_side *side = &proof->side[f];
     unsigned next = 0;
-    mpz_t index;
-    mpq_t weight, first[AXES], vertex[AXES], edge[AXES];
-    mpz_init(index);
-    mpq_init(weight);
-    check_each(first, sizeof first, mpq_init);
-    check_each(vertex, sizeof vertex, mpq_init);
-    check_each(edge, sizeof edge, mpq_init);
-    bool good = check_take(at, letter);
-    while (good && **at == ' ' && check_is_digit((*at)[1])) {
+    CHECK_NUMBER(weight);
+    CHECK_VECTOR(first);
+    CHECK_VECTOR(vertex);
+    CHECK_VECTOR(edge);
+    if (!check_take(at, letter))
+        return false;
+    while (**at == ' ' && check_is_digit((*at)[1])) {
+        mpz_ptr index = mpq_numref(weight);
         ++*at;
-        good = check_take_digits(at, index) && mpz_cmp_ui(index, next) >= 0 &&
-               mpz_cmp_ui(index, check_vertex_count(side)) < 0;
-        if (!good)
-            break;
+        if (!check_take_digits(at, index) || mpz_cmp_ui(index, next) < 0 ||
+            mpz_cmp_ui(index, check_vertex_count(side)) >= 0)
+            return false;
         check_vertex(side, (unsigned) mpz_get_ui(index), vertex);
         if (next == 0)
             check_copy(first, vertex);
@@ -75,21 +71,16 @@ static bool take_weights_of(const char **at, const char *letter, struct check_pr
         span_add(&side->span, edge);
         next = (unsigned) mpz_get_ui(index) + 1;
         if (!check_take(at, ":")) {
-            good = add_following(proof, f, vertex);
+            if (!add_following(proof, f, vertex))
+                return false;
             continue;
         }
-        good = check_take_number(at, weight) && mpq_sgn(weight) > 0;
-        if (!good)
-            break;
+        if (!check_take_number(at, weight) || mpq_sgn(weight) <= 0)
+            return false;
         mpq_add(side->total, side->total, weight);
         check_add_multiple(side->sum, weight, vertex, AXES);
     }
-    check_each(edge, sizeof edge, mpq_clear);
-    check_each(vertex, sizeof vertex, mpq_clear);
-    check_each(first, sizeof first, mpq_clear);
-    mpq_clear(weight);
-    mpz_clear(index);
-    return good && next > 0;
+    return next > 0;
 }
 
 bool check_take_weights(const char **at, struct check_proof *proof)
@@ -117,13 +108,11 @@ static void set_sums(struct check_proof *proof)
 /* Eliminates unknown k from equation e: adds a multiple of equation k, from unknown k on. */
 static void substitute(struct check_proof *proof, int k, int e)
 {
-    mpq_t factor;
-    mpq_init(factor);
+    CHECK_NUMBER(factor);
     mpq_div(factor, proof->equation[e][k], proof->equation[k][k]);
     mpq_neg(factor, factor);
     check_add_multiple(proof->equation[e] + k, factor, proof->equation[k] + k,
                        proof->following + 1 - k);
-    mpq_clear(factor);
 }
 
 /* Finds an equation among k, ..., count - 1 that contains unknown k, moves it to position k and
@@ -147,17 +136,15 @@ static bool eliminate(struct check_proof *proof, int k, int count)
  * sides of the equations of the axes are b - a, up to a common sign. */
 static int compare_radius(struct check_proof *proof)
 {
-    mpq_t square, of_axis;
-    mpq_inits(square, of_axis, NULL);
+    CHECK_NUMBER(square);
+    CHECK_NUMBER(of_axis);
     for (int axis = 0; axis < AXES; axis++) {
         const mpq_ptr apart = proof->equation[2 + axis][proof->following];
         mpq_mul(of_axis, apart, apart);
         mpq_add(square, square, of_axis);
     }
     mpq_mul(of_axis, proof->radius, proof->radius);
-    const int order = mpq_cmp(square, of_axis);
-    mpq_clears(square, of_axis, NULL);
-    return order;
+    return mpq_cmp(square, of_axis);
 }
 
 static const char *flaw_of_equations(struct check_proof *proof)
@@ -180,9 +167,8 @@ static const char *flaw_of_equations(struct check_proof *proof)
 static bool is_spanned(struct check_side *side)
 {
     const int rank = side->span.rank;
-    mpq_t first[AXES], vertex[AXES];
-    check_each(first, sizeof first, mpq_init);
-    check_each(vertex, sizeof vertex, mpq_init);
+    CHECK_VECTOR(first);
+    CHECK_VECTOR(vertex);
     check_vertex(side, 0, first);
     for (unsigned k = 1;
          k < check_vertex_count(side) && rank < side->frame->dim && side->span.rank == rank; k++) {
@@ -190,8 +176,6 @@ static bool is_spanned(struct check_side *side)
         check_subtract(vertex, vertex, first);
         span_add(&side->span, vertex);
     }
-    check_each(vertex, sizeof vertex, mpq_clear);
-    check_each(first, sizeof first, mpq_clear);
     return side->span.rank == rank;
 }
 
