@@ -1,8 +1,8 @@
 /* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
  * bodies that have frames, DECIDING, CERTIFYING, COMPLETE. answer_job_step() does a part of one
  * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or with a hull or
- * a radius, or whose numbers span too many bits, is a scene of one listed pair; any other pair of
- * frames is decided at once. */
+ * a radius, or whose numbers span too many bits, and a pair by another method than the default, is
+ * a scene of one listed pair; any other pair of frames is decided at once. */
 #include "answerer.h"
 
 #include "body.h"
@@ -122,6 +122,9 @@ static bool check_placements(struct answer_job *job, double duration)
             return check_refuse(at(job, i), FMB_DIMENSIONS_DIFFER, "dim", NULL);
         if (placement->placed.end_count > 0 && duration == 0)
             return check_refuse(at(job, i), FMB_BAD_DURATION, "num_end_pose", "the duration is 0");
+        job->placed[i] = placement->placed;
+        if (job->is_pair) /* groups are of scenes */
+            job->placed[i].group = 0;
     }
     return true;
 }
@@ -138,44 +141,16 @@ static bool check_pair(struct answer_job *job)
             check_refuse(at(job, -1), FMB_DIMENSIONS_DIFFER, "dim", NULL));
 }
 
-/* Number of pairs that are_valid_pairs() checks at once. */
-enum { PAIR_GROUP = 16 };
-
-/* Whether each of PAIR_GROUP pairs has two different indices below placements. Compilers vectorize
- * the loop only if the function is not inlined. */
-static bool __attribute__((noinline))
-are_valid_pairs(const unsigned (*restrict pair)[2], unsigned placements)
-{
-    unsigned bad = 0;
-    for (int i = 0; i < PAIR_GROUP; i++)
-        bad |= (unsigned) (pair[i][0] >= placements) | (unsigned) (pair[i][1] >= placements) |
-               (unsigned) (pair[i][0] == pair[i][1]);
-    return !bad;
-}
-
-static bool check_pair_at(struct check_context *context, const char *field, const unsigned pair[2],
-                          int32_t i, unsigned placements)
-{
-    const bool inside = pair[0] < placements && pair[1] < placements;
-    return (inside && pair[0] != pair[1]) ||
-           check_refuse_at(context, FMB_BAD_PAIR, field, 2 * i + (pair[0] < placements),
-                           inside ? "a placement against itself" : "no placement has this index");
-}
-
-/* Checks count pairs: whole groups of PAIR_GROUP at once, the pairs of an invalid group and the
- * remainder one by one. */
 static bool check_indices(struct check_context *context, const char *field,
                           const unsigned (*pair)[2], int32_t count, int32_t placements)
 {
-    const unsigned end = (unsigned) placements;
-    for (int32_t i = 0; i < count; i++) {
-        const bool many = i % PAIR_GROUP == 0 && i + PAIR_GROUP <= count;
-        if (many && are_valid_pairs(pair + i, end))
-            i += PAIR_GROUP - 1;
-        else if (!check_pair_at(context, field, pair[i], i, end))
-            return false;
-    }
-    return true;
+    const size_t i = pairs_first_bad(pair, (size_t) count, (size_t) placements);
+    if (i == (size_t) count)
+        return true;
+    const bool first = pair[i][0] < (unsigned) placements;
+    const bool both = first && pair[i][1] < (unsigned) placements;
+    return check_refuse_at(context, FMB_BAD_PAIR, field, 2 * (int) i + first,
+                           both ? "a placement against itself" : "no placement has this index");
 }
 
 /* No listed pair may be ignored. The listed pairs of each lower index are looked up together, which
@@ -203,18 +178,6 @@ static bool check_ignored(struct check_context *context, struct answer_job *job)
            check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * (int) first, "a pair to ignore");
 }
 
-/* No listed pair may be within a group. */
-static bool check_groups(struct check_context *context, const struct scene_query *query)
-{
-    const struct query_placement *placement = query->placement;
-    for (int32_t i = 0; i < query->index_count / 2; i++) {
-        const int64_t group = placement[query->pair[i][0]].placed.group;
-        if (group != 0 && group == placement[query->pair[i][1]].placed.group)
-            return check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * i, "a pair of one group");
-    }
-    return true;
-}
-
 /* The arrays of scene_query hold all pairs that a message of QUERY_BYTES_MAX can have; but a
  * message can have more placements, of dimension 0, than the array holds. */
 static bool check_counts(struct check_context *context, const struct scene_query *query)
@@ -234,12 +197,14 @@ static bool check_counts(struct check_context *context, const struct scene_query
     return true;
 }
 
-/* The engine's scene, without its placements. On input: a query whose counts, method and which were
- * checked. Ignored pairs of a listed scene are left out, since no listed pair may be ignored. */
-static struct fmb_scene scene_of(const struct scene_query *query)
+/* The engine's scene. On input: a query whose counts, method and which were checked. Ignored pairs
+ * of a listed scene are left out, since no listed pair may be ignored. */
+static struct fmb_scene scene_of(const struct answer_job *job)
 {
+    const struct scene_query *query = &job->query;
     const bool listed = query->which == FMB_PAIRS_LISTED;
-    return (struct fmb_scene){.placement_count = (size_t) query->placement_count,
+    return (struct fmb_scene){.placements = job->placed,
+                              .placement_count = (size_t) query->placement_count,
                               .duration = query->duration,
                               .instant = query->duration == 0,
                               .method = fmb_method_by_number(query->method),
@@ -254,8 +219,9 @@ static struct fmb_scene scene_of(const struct scene_query *query)
                               .first_pair = (unsigned long long) query->first_pair};
 }
 
-static bool check_which(struct check_context *context, const struct scene_query *query)
+static bool check_which(struct check_context *context, const struct answer_job *job)
 {
+    const struct scene_query *query = &job->query;
     const struct fmb_method *method = fmb_method_by_number(query->method);
     const bool across = query->which == FMB_PAIRS_ACROSS;
     if (query->which < FMB_PAIRS_ALL || query->which > FMB_PAIRS_ACROSS)
@@ -263,12 +229,21 @@ static bool check_which(struct check_context *context, const struct scene_query 
     if (query->split < 0 || query->split > (across ? query->placement_count : 0))
         return check_refuse(context, FMB_BAD_PAIR, "split",
                             across ? "not from 0 to num_placements" : "not 0");
-    const struct fmb_scene scene = scene_of(query);
+    const struct fmb_scene scene = scene_of(job);
     if (query->first_pair < 0 || scene.first_pair > fmb_scene_pair_count(&scene))
         return check_refuse(context, FMB_BAD_PAIR, "first_pair", "there are not so many");
     if (query->which != FMB_PAIRS_LISTED && !method->certain)
         return check_refuse(context, FMB_CANNOT_DECIDE, "method", "listed pairs alone");
     return true;
+}
+
+/* No listed pair may be within a group. On input: the placements and the pairs were checked. */
+static bool check_groups(struct check_context *context, const struct answer_job *job)
+{
+    const struct fmb_scene scene = scene_of(job);
+    const size_t k = pairs_first_grouped(&scene);
+    return k == scene.pair_count ||
+           check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * (int) k, "a pair of one group");
 }
 
 static bool check_margin(struct check_context *context, const struct scene_query *query)
@@ -286,13 +261,13 @@ static bool check_scene(struct answer_job *job)
            check_margin(context, query) &&
            check_request(context, query->duration, query->method, want,
                          FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT) &&
-           check_counts(context, query) && check_which(context, query) &&
+           check_counts(context, query) && check_which(context, job) &&
            check_placements(job, query->duration) &&
            check_indices(at(job, -1), "indices", query->pair, query->index_count / 2,
                          query->placement_count) &&
            check_indices(context, "ignored", query->ignored, query->ignored_count / 2,
                          query->placement_count) &&
-           check_groups(context, query) && check_ignored(context, job);
+           check_groups(context, job) && check_ignored(context, job);
 }
 
 /* The end of the placements of this step. If there are several steps, prefetches their bodies. */
@@ -471,63 +446,14 @@ static enum answer_stage begin_certificate(struct answer_job *job, enum fmb_stat
     return job->certificate ? certify(job) : complete_pair(job, status);
 }
 
-/* Decides a pair of frames by the default method, if that takes microseconds. */
+/* Decides a pair of frames, unless it takes steps, or another method than the default. */
 static bool decide_at_once(struct answer_job *job)
 {
-    static const unsigned pair[1][2] = {{0, 1}};
     const struct pair_query *query = &job->pair;
-    const bool box = query->want & FMB_WANT_BOX, gap = query->want & FMB_WANT_GAP;
-    const bool point = query->want & FMB_WANT_POINT;
-    struct fmb_answer *answer = &job->pair_result.answer;
-    struct fmb_prepared frames[2];
-    unsigned char verdict;
-    size_t open, open_count;
-    fmb_prepare(&job->placed[0], 0, 1, &frames[0]);
-    fmb_prepare(&job->placed[1], 0, 1, &frames[1]);
-    const struct fmb_batch batch = {.frames = frames,
-                                    .frame_count = 2,
-                                    .pairs = pair,
-                                    .pair_count = 1,
-                                    .duration = query->duration,
-                                    .instant = query->duration == 0,
-                                    .verdicts = &verdict,
-                                    .contacts = &answer->contact,
-                                    .boxes = box ? &answer->box : NULL,
-                                    .points = point ? &answer->point : NULL,
-                                    .gaps = gap ? &answer->gap : NULL,
-                                    .open = &open,
-                                    .open_count = &open_count};
-    const enum fmb_status status = fmb_decide_batch(&batch);
-    assert(status == FMB_OK);
-    (void) status;
-    if (open_count > 0)
-        return false;
-    if (verdict < FMB_TOUCHING) { /* no NAN */
-        memset(answer->contact, 0, sizeof answer->contact);
-        memset(answer->box, 0, sizeof answer->box);
-        memset(answer->point, 0, sizeof answer->point);
-    }
-    answer->verdict = (enum fmb_verdict) verdict;
-    answer->has_contact = verdict >= FMB_TOUCHING;
-    answer->has_box = answer->has_contact && box;
-    answer->has_point = answer->has_contact && point;
-    answer->has_gap = gap;
-    return true;
-}
-
-/* Decides a pair of frames, unless it takes steps. */
-static bool decide_frames(struct answer_job *job, enum fmb_status *status)
-{
-    const struct pair_query *query = &job->pair;
-    const struct fmb_method *method = fmb_method_by_number(query->method);
-    *status = FMB_OK;
-    if (method == fmb_method_default())
-        return decide_at_once(job);
-    if (!method->certain)
-        *status = fmb_decide(method, &job->placed[0], &job->placed[1], query->duration,
-                             (unsigned) query->want & (FMB_WANT_BOX | FMB_WANT_GAP),
-                             &job->pair_result.answer);
-    return !method->certain;
+    return !job->in_steps && fmb_method_by_number(query->method) == fmb_method_default() &&
+           fmb_decide_at_once(&job->placed[0], &job->placed[1], query->duration,
+                              (unsigned) query->want & ~(unsigned) FMB_WANT_CERTIFICATE,
+                              &job->pair_result.answer);
 }
 
 /* Takes the answer of a pair that was decided in steps. */
@@ -566,14 +492,13 @@ static void begin_answers(struct answer_job *job)
 /* Begins the engine's scene, or decides a pair of frames. */
 static enum answer_stage begin_deciding(struct answer_job *job)
 {
-    enum fmb_status status;
-    if (job->is_pair && !job->in_steps && decide_frames(job, &status))
-        return begin_certificate(job, status);
-    job->scene = job->is_pair ? scene_of_pair(&job->pair) : scene_of(&job->query);
+    if (job->is_pair && decide_at_once(job))
+        return begin_certificate(job, FMB_OK);
+    job->scene = job->is_pair ? scene_of_pair(&job->pair) : scene_of(job);
     job->scene.placements = job->placed;
     if (!job->is_pair)
         begin_answers(job);
-    status = fmb_scene_begin(&job->scene, &limits, job->memory, &job->state);
+    const enum fmb_status status = fmb_scene_begin(&job->scene, &limits, job->memory, &job->state);
     assert(status == FMB_OK);
     (void) status;
     return DECIDING;
@@ -601,10 +526,7 @@ static enum answer_stage add(struct answer_job *job)
         if (!job->used[i].body && !intern(job, i, &frames))
             break;
         note_handle(job, i);
-        job->placed[i] = job->placements[i].placed;
         job->placed[i].body = job->used[i].body;
-        if (job->is_pair) /* groups are of scenes */
-            job->placed[i].group = 0;
         job->several_frames = job->several_frames || job->used[i].body->frame_count > 1;
         job->in_steps = job->in_steps || is_large(job->used[i].body);
     }

@@ -69,40 +69,27 @@ void answerer_begin_definition(const struct answerer *answerer, const struct que
 
 /* ---- Refusals ---- */
 
-static size_t refuse_pair(const struct answerer *answerer, const struct pair_query *query,
-                          enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
-{
-    struct pair_result result;
-    answerer_begin_pair(answerer, query, status, &result);
-    return wire_write_pair_result(&result, out);
-}
-
-static size_t refuse_scene(struct answerer *answerer, const struct query_header *query,
-                           enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
-{
-    answerer_begin_scene(answerer, query, status, &answerer->scene);
-    return wire_write_scene_result(&answerer->scene, out);
-}
-
-static size_t refuse_definition(struct answerer *answerer, const struct query_header *query,
-                                enum fmb_status status, unsigned char out[QUERY_BYTES_MAX])
-{
-    answerer_begin_definition(answerer, query, status, &answerer->definition);
-    return wire_write_definition(&answerer->definition, out);
-}
-
 const char *answer_refused(struct answerer *answerer, enum answer_kind kind,
                            const unsigned char *bytes, size_t size, enum fmb_status status,
                            unsigned char out[QUERY_BYTES_MAX], size_t *out_size)
 {
     struct pair_query pair;
+    struct pair_result result;
     const char *error = kind == ANSWER_PAIR ? wire_read_pair_query(bytes, (uint32_t) size, &pair)
                         : kind == ANSWER_SCENE
                             ? wire_read_scene_header(bytes, (uint32_t) size, &pair.header)
                             : wire_read_definition_header(bytes, (uint32_t) size, &pair.header);
-    if (!error)
-        *out_size = kind == ANSWER_PAIR    ? refuse_pair(answerer, &pair, status, out)
-                    : kind == ANSWER_SCENE ? refuse_scene(answerer, &pair.header, status, out)
-                                           : refuse_definition(answerer, &pair.header, status, out);
-    return error;
+    if (error)
+        return error;
+    if (kind == ANSWER_PAIR) {
+        answerer_begin_pair(answerer, &pair, status, &result);
+        *out_size = wire_write_pair_result(&result, out);
+    } else if (kind == ANSWER_SCENE) {
+        answerer_begin_scene(answerer, &pair.header, status, &answerer->scene);
+        *out_size = wire_write_scene_result(&answerer->scene, out);
+    } else {
+        answerer_begin_definition(answerer, &pair.header, status, &answerer->definition);
+        *out_size = wire_write_definition(&answerer->definition, out);
+    }
+    return NULL;
 }

@@ -61,6 +61,15 @@ enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned firs
 enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                     double duration, enum fmb_verdict *verdict);
 
+/* Decides a pair of placed bodies of one frame each, as fmb_decide() by the method certified with
+ * FMB_WANT_TIMES, if that takes tens of microseconds at most and allocates no memory: a batch would
+ * not leave this pair open.
+ *
+ * In:  as of fmb_decide(), which does not refuse it
+ * Returns false, with *answer unspecified, if it takes more. */
+bool fmb_decide_at_once(const struct fmb_placement *a, const struct fmb_placement *b,
+                        double duration, unsigned want, struct fmb_answer *answer);
+
 /* In and out of fmb_decide_batch(). The caller owns all arrays. Frames and pairs are read only; the
  * others are written. */
 struct fmb_batch {

@@ -321,7 +321,7 @@ static bool may_decide_single(struct batch_block *block, size_t k)
     return may;
 }
 
-static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb_answer *answer)
+void batch_put(const struct fmb_batch *batch, size_t i, const struct fmb_answer *answer)
 {
     batch->verdicts[i] = (unsigned char) answer->verdict;
     if (batch->contacts && answer->has_contact)
@@ -330,6 +330,8 @@ static void put_answer(const struct fmb_batch *batch, size_t i, const struct fmb
         memcpy(batch->boxes[i], answer->box, sizeof answer->box);
     if (answer->has_point)
         memcpy(batch->points[i], answer->point, sizeof answer->point);
+    if (batch->gaps)
+        batch->gaps[i] = answer->has_gap ? answer->gap : gap_none();
 }
 
 /* Returns what is wanted of pairs in contact, besides gaps. */
@@ -351,7 +353,7 @@ static void decide_single(struct batch_block *block, size_t k, unsigned want)
     if (may_decide_single(block, k) &&
         certified_begin(pair[0], pair[1], batch->duration, want, INFINITY, SUPPORT_QUICK,
                         &certified, &answer)) {
-        put_answer(batch, i, &answer);
+        batch_put(batch, i, &answer);
         return;
     }
     leave_open(batch, i);
@@ -433,25 +435,6 @@ static struct kernel_call call_of(struct selection *selection, double duration)
         .pairs = selection->pair, .count = selection->count, .duration = duration};
 }
 
-/* Computes what the filter did not give for pair k, its box, its point or both, or leaves the pair
- * open. */
-static void put_missing(struct batch_block *block, size_t k, bool box, bool point)
-{
-    const struct fmb_batch *batch = block->batch;
-    const struct fmb_prepared *const *pair = block->pair[k];
-    const size_t i = block->first + block->slot[k];
-    struct fmb_answer answer = {.verdict = (enum fmb_verdict) batch->verdicts[i]};
-    const bool done =
-        may_decide_single(block, k) &&
-        (!box || certified_box_unsure(pair[0], pair[1], batch->duration, batch->boxes[i])) &&
-        (!point || certified_gap_and_point(pair[0], pair[1], batch->duration, FMB_WANT_POINT,
-                                           INFINITY, &answer));
-    if (!done)
-        leave_open(batch, i);
-    else if (point)
-        memcpy(batch->points[i], answer.point, sizeof answer.point);
-}
-
 /* Computes boxes and points of the pairs in contact in which a frame moves, or of those in which
  * none does. Returns how many are of the other kind. */
 static size_t put_group(struct batch_block *block, const struct batch_job *job, bool moving,
@@ -490,7 +473,8 @@ static size_t put_group(struct batch_block *block, const struct batch_job *job, 
         if (batch->points)
             memcpy(batch->points[i], point[n], sizeof point[n]);
         if (no_box || no_point)
-            put_missing(block, k, no_box, no_point);
+            decide_single(block, k,
+                          (no_box ? FMB_WANT_BOX : 0u) | (no_point ? FMB_WANT_POINT : 0u));
     }
     return others;
 }
@@ -686,9 +670,7 @@ static void decide_open(const struct batch_job *job, size_t i)
     certified_decide_prepared(frame_at(batch, batch->pairs[i][0]),
                               frame_at(batch, batch->pairs[i][1]), batch->duration, want,
                               job->farthest, &answer);
-    put_answer(batch, i, &answer);
-    if (batch->gaps)
-        batch->gaps[i] = answer.has_gap ? answer.gap : gap_none();
+    batch_put(batch, i, &answer);
 }
 
 /* Lists the pairs that the blocks left open, in ascending order, and clears their verdicts; or

@@ -16,4 +16,7 @@ static inline bool batch_is_contact(unsigned char verdict)
 enum fmb_status batch_decide(const struct fmb_batch *batch, enum instructions instructions,
                              double farthest);
 
+/* Stores the answer of pair i in the arrays of a batch. */
+void batch_put(const struct fmb_batch *batch, size_t i, const struct fmb_answer *answer);
+
 #endif

@@ -240,8 +240,10 @@ unsigned certified_box(const struct fmb_prepared *a, const struct fmb_prepared *
     return want;
 }
 
-bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                          double duration, double box[2][FMB_DIM_MAX])
+/* Computes the box of a pair in contact for which certified_box() does not give it, in integers of
+ * at most 512 bits. Returns false if it needs more. */
+static bool box_in_limbs(const struct fmb_prepared *a, const struct fmb_prepared *b,
+                         double duration, double box[2][FMB_DIM_MAX])
 {
     bool swapped;
     const enum kernel_kind kind = kernel_box_kind(a, b, duration, &swapped);
@@ -328,7 +330,7 @@ static bool measure(struct certified *certified, struct fmb_answer *answer)
     if (meets && certified->want & (FMB_WANT_BOX | FMB_WANT_POINT))
         left |= certified_box(a, b, certified->duration,
                               certified->want & (FMB_WANT_BOX | FMB_WANT_POINT), answer);
-    if (left & FMB_WANT_BOX && !certified_box_unsure(a, b, certified->duration, answer->box)) {
+    if (left & FMB_WANT_BOX && !box_in_limbs(a, b, certified->duration, answer->box)) {
         if (proven->has_box)
             memcpy(answer->box, proven->box, sizeof answer->box);
         else
@@ -472,6 +474,17 @@ enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
     while (!done)
         done = certified_step(&certified, answer);
     return answer->verdict ? FMB_OK : FMB_CANNOT_DECIDE;
+}
+
+bool fmb_decide_at_once(const struct fmb_placement *a, const struct fmb_placement *b,
+                        double duration, unsigned want, struct fmb_answer *answer)
+{
+    const struct frame_pair pair = {
+        {fmb_body_frame(a->body, 0), a}, {fmb_body_frame(b->body, 0), b}, duration};
+    struct certified certified;
+    memset(answer, 0, sizeof *answer);
+    return begin_pair(&pair, NULL, NULL, want | FMB_WANT_TIMES, INFINITY, SUPPORT_QUICK, &certified,
+                      answer);
 }
 
 enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)

@@ -127,9 +127,4 @@ bool contact_of(const struct frame_pair *pair, const struct slabs_pair *slabs, b
 unsigned certified_box(const struct fmb_prepared *a, const struct fmb_prepared *b, double duration,
                        unsigned want, struct fmb_answer *answer);
 
-/* Computes the box of a pair in contact for which certified_box() does not give it, in integers of
- * at most 512 bits. Returns false if it needs more. */
-bool certified_box_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,
-                          double duration, double box[2][FMB_DIM_MAX]);
-
 #endif

@@ -64,6 +64,7 @@ struct scene_block {
     unsigned slots[BLOCK][2];
     unsigned char owner[BLOCK]; /* the pair of bodies */
     struct scene_outcomes outcomes;
+    struct fmb_batch batch;
     /* Pairs of frames that need exact arithmetic, ascending; those before next_open are decided. */
     size_t open[BLOCK], open_count, next_open;
     /* Pairs of bodies: those before given have been returned. */
@@ -209,43 +210,17 @@ static enum fmb_status check_placements(const struct fmb_scene *scene, size_t co
     return FMB_BAD_DURATION;
 }
 
-static bool is_pair(const unsigned pair[2], size_t placements)
+static enum fmb_status check_indices(const unsigned (*pair)[2], size_t count, size_t placements,
+                                     struct why why, const char *array)
 {
-    const unsigned end = (unsigned) placements;
-    return (pair[0] < end) & (pair[1] < end) & (pair[0] != pair[1]);
-}
-
-/* The first loop has no branches, so that compilers vectorize it. */
-static enum fmb_status check_indices(const unsigned (*restrict pair)[2], size_t count,
-                                     size_t placements, struct why why, const char *array)
-{
-    bool good = true;
-    size_t i = 0;
-    for (size_t k = 0; k < count; k++)
-        good &= is_pair(pair[k], placements);
-    if (good)
-        return FMB_OK;
-    while (is_pair(pair[i], placements))
-        i++;
-    return refuse_element(why, FMB_BAD_PAIR, array, i);
+    const size_t i = pairs_first_bad(pair, count, placements);
+    return i == count ? FMB_OK : refuse_element(why, FMB_BAD_PAIR, array, i);
 }
 
 /* Whether pairs in the answers have gaps: all, or those that meet or are near. */
 static bool has_gaps(const struct fmb_scene *scene)
 {
     return scene->want & FMB_WANT_GAP || scene->margin > 0;
-}
-
-static enum fmb_status check_groups(const struct fmb_scene *scene, struct why why)
-{
-    const struct fmb_placement *placement = scene->placements;
-    bool groups = false;
-    for (size_t i = 0; i < scene->placement_count; i++)
-        groups = groups || placement[i].group;
-    for (size_t k = 0; groups && k < scene->pair_count; k++)
-        if (pair_is_within_group(scene, scene->pairs[k][0], scene->pairs[k][1]))
-            return refuse_element(why, FMB_BAD_PAIR, "pairs", k);
-    return FMB_OK;
 }
 
 static enum fmb_status check_pairs(const struct fmb_scene *scene, struct why why)
@@ -264,8 +239,9 @@ static enum fmb_status check_pairs(const struct fmb_scene *scene, struct why why
         check_indices(scene->pairs, scene->pair_count, placements, why, "pairs");
     if (status == FMB_OK)
         status = check_indices(scene->ignored, scene->ignored_count, placements, why, "ignored");
-    if (status == FMB_OK)
-        status = check_groups(scene, why);
+    const size_t grouped = status == FMB_OK ? pairs_first_grouped(scene) : scene->pair_count;
+    if (grouped < scene->pair_count)
+        status = refuse_element(why, FMB_BAD_PAIR, "pairs", grouped);
     if (status == FMB_OK && scene->first_pair > fmb_scene_pair_count(scene))
         status = refuse(why, FMB_BAD_PAIR, "first_pair", NULL);
     if (status != FMB_OK || !scene->method || scene->method->certain)
@@ -520,12 +496,12 @@ static void fill(struct fmb_scene_state *state)
 
 /* ---- Deciding ---- */
 
-/* Decides the pairs of the block by the batch. */
-static void decide_batch(struct fmb_scene_state *state)
+/* Sets the batch of the pairs of frames of the block. */
+static void set_batch(struct fmb_scene_state *state)
 {
     const struct fmb_scene *scene = &state->scene;
     struct scene_block *block = &state->block;
-    const struct fmb_batch batch = {
+    block->batch = (struct fmb_batch){
         .frames = state->frames.slot,
         .frame_count = state->frames.used,
         .pairs = block->frames,
@@ -538,24 +514,15 @@ static void decide_batch(struct fmb_scene_state *state)
         .gaps = has_gaps(scene) ? block->outcomes.gap : NULL,
         .open = block->open,
         .open_count = &block->open_count};
-    const enum fmb_status status =
-        batch_decide(&batch, INSTRUCTIONS_BEST, farthest_of_frames(state));
-    assert(status == FMB_OK);
-    (void) status;
 }
 
-/* Stores the answer of pair of frames k of the block. */
-static void put_outcome(struct fmb_scene_state *state, size_t k, const struct fmb_answer *answer)
+/* Decides the pairs of the block by the batch. */
+static void decide_batch(struct fmb_scene_state *state)
 {
-    struct scene_outcomes *outcomes = &state->block.outcomes;
-    outcomes->verdict[k] = (unsigned char) answer->verdict;
-    if (answer->has_contact)
-        memcpy(outcomes->contact[k], answer->contact, sizeof answer->contact);
-    if (answer->has_box)
-        memcpy(outcomes->box[k], answer->box, sizeof answer->box);
-    if (answer->has_point)
-        memcpy(outcomes->point[k], answer->point, sizeof answer->point);
-    outcomes->gap[k] = answer->has_gap ? answer->gap : gap_none();
+    const enum fmb_status status =
+        batch_decide(&state->block.batch, INSTRUCTIONS_BEST, farthest_of_frames(state));
+    assert(status == FMB_OK);
+    (void) status;
 }
 
 static unsigned want_of_frames(const struct fmb_scene *scene)
@@ -574,7 +541,7 @@ static void decide_single(struct fmb_scene_state *state)
     struct fmb_answer answer = none;
     if (state->scene.method->decide(&pair, want_of_frames(&state->scene), &answer) != FMB_OK)
         answer = none;
-    put_outcome(state, 0, &answer);
+    batch_put(&state->block.batch, 0, &answer);
 }
 
 static void begin_block(struct fmb_scene_state *state)
@@ -587,6 +554,7 @@ static void begin_block(struct fmb_scene_state *state)
         fill_direct(state);
     else
         fill(state);
+    set_batch(state);
     if (block->count > 0 && state->batched)
         decide_batch(state);
     else if (block->count > 0 && state->scene.method->certain)
@@ -817,7 +785,7 @@ static bool step_open(struct fmb_scene_state *state, size_t k)
                                            &state->decision, &state->decided);
     }
     if (!state->deciding)
-        put_outcome(state, k, &state->decided);
+        batch_put(&state->block.batch, k, &state->decided);
     return !state->deciding;
 }
 
