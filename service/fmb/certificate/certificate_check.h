@@ -64,8 +64,8 @@ struct check_scope {
 };
 struct check_scope check_enter(void *numbers, size_t bytes);
 void check_leave(struct check_scope *scope);
-#define CHECK_SCOPE(name)                                                \
-    __attribute__((cleanup(check_leave))) struct check_scope name##_is = \
+#define CHECK_SCOPE(name)                                                        \
+    __attribute__((cleanup(check_leave), unused)) struct check_scope name##_is = \
         check_enter(name, sizeof name)
 #define CHECK_NUMBER(name) \
     mpq_t name;            \
