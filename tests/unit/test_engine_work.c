@@ -216,6 +216,43 @@ static void work_of_turning_pairs_is_bounded(void **state)
     assert_true(pair <= most_of_pair);
 }
 
+/* A square plate turns by a right angle about its centre. A corner enters the face of a cube to a
+ * depth of about 2^-30 in the middle of the window, slowly: doubles do not see the ends of the
+ * contact. Integers take the work of a few directions and verdicts, not of a search by halving. */
+static void ends_of_shallow_contacts_are_found_by_their_polynomials(void **state)
+{
+    static const double most_allowed = 3e4, side[3] = {1, 1, 1}, plate[3] = {1, 1, 0.25};
+    struct fmb_body body[2];
+    struct fmb_placement placement[2] = {{.body = &body[0]}, {.body = &body[1]}};
+    double most = 0;
+    assert_int_equal(fmb_body_make(3, FMB_BOX, side, 3, &body[0]), FMB_OK);
+    assert_int_equal(fmb_body_make(3, FMB_BOX, plate, 3, &body[1]), FMB_OK);
+    for (int k = 0; k < 8; k++) {
+        const double turned[4] = {1, 0, 0, 0.5 * k / 8}, quarter[4] = {1, 0, 0, 1};
+        struct fmb_placement *moving = &placement[1];
+        struct fmb_answer answer;
+        moving->position[0] = moving->end_position[0] = 0.5 + sqrt(0.5) - 0x1p-30;
+        moving->position[1] = moving->end_position[1] = 0.03125 * k;
+        moving->orientation_count = 4;
+        moving->end_count = 7;
+        for (int i = 0; i < 4; i++)
+            moving->orientation[i] = turned[i];
+        for (int i = 0; i < 4; i++) /* the product of both */
+            moving->end_orientation[i] = i == 0   ? turned[0] * quarter[0] - turned[3] * quarter[3]
+                                         : i == 3 ? turned[0] * quarter[3] + turned[3] * quarter[0]
+                                                  : 0;
+        const double before = exact_work;
+        assert_int_equal(
+            fmb_decide(fmb_method_default(), &placement[0], moving, 1, FMB_WANT_TIMES, &answer),
+            FMB_OK);
+        most = fmax(most, exact_work - before);
+        assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+        assert_true(answer.contact[1] - answer.contact[0] < 0x1p-13);
+    }
+    printf("# at most %.0f\n", most);
+    assert_true(most > 0 && most <= most_allowed);
+}
+
 /* The limits are about one and a half times the work that searches found; a step takes less than a
  * millisecond. */
 int main(void)
@@ -229,11 +266,12 @@ int main(void)
         {"gaps", work_of_gap, {4e4, 3e5}, 8},
         {"certificates", work_of_certificate, {2.4e5, 2.4e5}, 8}};
     enum { SEARCHES = COUNT(searches) };
-    struct CMUnitTest tests[3 + SEARCHES] = {
+    struct CMUnitTest tests[4 + SEARCHES] = {
         cmocka_unit_test(only_slabs_that_may_have_an_end_are_computed),
         cmocka_unit_test(contacts_of_numbers_that_round_are_taken_as_they_are),
-        cmocka_unit_test(work_of_turning_pairs_is_bounded)};
+        cmocka_unit_test(work_of_turning_pairs_is_bounded),
+        cmocka_unit_test(ends_of_shallow_contacts_are_found_by_their_polynomials)};
     for (size_t i = 0; i < SEARCHES; i++)
-        tests[3 + i] = (struct CMUnitTest) cmocka_unit_test_prestate(work_is_bounded, &searches[i]);
+        tests[4 + i] = (struct CMUnitTest) cmocka_unit_test_prestate(work_is_bounded, &searches[i]);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

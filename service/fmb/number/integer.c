@@ -30,20 +30,20 @@ void integer_set(mpz_t out, struct dyadic x, long unit)
         mpz_mul_2exp(out, out, (mp_bitcnt_t) (x.exponent - unit));
 }
 
-void integer_round_vector(mpz_t v[3], double out[3])
+void integer_round(mpz_t *v, int count, double *out)
 {
-    long exponent[3], largest = 0;
+    long exponent[INTEGER_ROUND_MAX], largest = 0;
     bool any = false;
-    for (int axis = 0; axis < 3; axis++) {
-        out[axis] = mpz_get_d_2exp(&exponent[axis], v[axis]);
-        if (out[axis] != 0 && (!any || exponent[axis] > largest)) {
-            largest = exponent[axis];
+    for (int i = 0; i < count; i++) {
+        out[i] = mpz_get_d_2exp(&exponent[i], v[i]);
+        if (out[i] != 0 && (!any || exponent[i] > largest)) {
+            largest = exponent[i];
             any = true;
         }
     }
-    for (int axis = 0; axis < 3; axis++) {
-        const long down = largest - exponent[axis];
-        out[axis] = out[axis] == 0 || down > 1100 ? 0 : ldexp(out[axis], (int) -down - 4);
+    for (int i = 0; i < count; i++) {
+        const long down = largest - exponent[i];
+        out[i] = out[i] == 0 || down > 1100 ? 0 : ldexp(out[i], (int) -down - 4);
     }
 }
 

@@ -263,7 +263,7 @@ static unsigned price_side(struct programs *e, int f, bool reduce)
     turn_back(e, side, e->normal[f]);
     if (integer_is_zero(e->body))
         return best;
-    integer_round_vector(e->body, n);
+    integer_round(e->body, 3, n);
     const unsigned count = support_view_list(side->view, n, side->face, side->count, listed);
     for (unsigned k = 0; k < count; k++) {
         const unsigned i = listed[k];

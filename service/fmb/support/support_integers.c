@@ -177,8 +177,6 @@ static void set_side(const struct fmb_placement *placement, double duration, boo
         mpz_mul(position, position, integers->scale);
         mpz_mul(way, way, integers->scale);
     }
-    if (side->frame->shape != FMB_HULL)
-        set_small(side, integers->unit);
 }
 
 long support_integers_unit(const struct frame_pair *frames)
@@ -191,19 +189,27 @@ long support_integers_unit(const struct frame_pair *frames)
     return span.unit;
 }
 
+void support_integers_bodies(const struct frame_pair *frames, long unit,
+                             struct support_integers *out)
+{
+    out->unit = unit;
+    for (int f = 0; f < 2; f++) {
+        out->side[f].frame = f == 0 ? frames->a.frame : frames->b.frame;
+        if (out->side[f].frame->shape != FMB_HULL)
+            set_small(&out->side[f], unit);
+    }
+}
+
 void support_integers_set(const struct frame_pair *frames, bool posed, double at,
                           struct support_integers *out)
 {
     const struct placed_frame *placed[2] = {&frames->a, &frames->b};
     const struct dyadic late = dyadic_of(at);
     struct support_side *side = out->side;
-    out->unit = posed ? support_integers_unit(frames) : limbs_span_of(frames).unit;
-    if (posed && late.exponent < 0)
-        out->unit += late.exponent;
-    for (int f = 0; f < 2; f++) {
-        side[f].frame = placed[f]->frame;
+    const long unit = posed ? support_integers_unit(frames) : limbs_span_of(frames).unit;
+    support_integers_bodies(frames, posed && late.exponent < 0 ? unit + late.exponent : unit, out);
+    for (int f = 0; f < 2; f++)
         set_turn(placed[f]->placement, posed, at, &side[f].turn);
-    }
     const bool same = mpz_cmp(side[0].turn.norm, side[1].turn.norm) == 0;
     mpz_set(out->scale, side[0].turn.norm);
     if (!same)

@@ -42,6 +42,11 @@ void support_integers_each(struct support_integers *integers, void (*call)(mpz_p
 void support_integers_set(const struct frame_pair *frames, bool posed, double at,
                           struct support_integers *out);
 
+/* Sets the unit, the frames and their vertices in body coordinates alone. In: as above; unit
+ * divides all coordinates of the frames. */
+void support_integers_bodies(const struct frame_pair *frames, long unit,
+                             struct support_integers *out);
+
 /* out := factor N(x, y), and norm := x . y, for quaternions x and y (motion.h). In: out is 0. */
 void support_integers_polar(mpz_t x[4], mpz_t y[4], unsigned factor, mpz_t out[3][3], mpz_t norm,
                             mpz_t scratch);

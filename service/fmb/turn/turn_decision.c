@@ -50,10 +50,13 @@ void turn_end(struct turn_decision *decision)
 
 /* ---- Verdicts at one time ---- */
 
-/* Returns the middle, rounded down to a multiple of 2^-52 so that 1 - s is exact (the length of an
- * interval next to a known contact need not be a power of two). */
-static double middle_of(struct turn_interval interval)
+/* Returns where an interval is examined and divided: at the estimated end of a contact, if it
+ * contains this, otherwise at its middle. The middle is rounded down to a multiple of 2^-52 so that
+ * 1 - s is exact (the length of an interval next to a known contact need not be a power of two). */
+static double middle_of(const struct turn_decision *decision, struct turn_interval interval)
 {
+    if (interval.lo < decision->split && decision->split < interval.hi)
+        return decision->split;
     return floor(0.5 * (interval.lo + interval.hi) * 0x1p52) * 0x1p-52;
 }
 
@@ -109,14 +112,21 @@ static enum fmb_verdict look(struct turn_decision *decision, double s)
     return verdict;
 }
 
-/* Returns the verdict at s if it is known or doubles give it. Otherwise begins the programs, unless
- * the decision is bounded, and returns 0: the verdict is known when they have ended. */
-static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
+/* Returns the verdict at an examined time, or 0. */
+static enum fmb_verdict known_at(const struct turn_decision *decision, double s)
 {
     for (unsigned k = 0; k < TURN_KNOWN; k++)
         if (decision->known[k].at == s)
             return decision->known[k].verdict;
-    const enum fmb_verdict verdict = look(decision, s);
+    return 0;
+}
+
+/* Returns the verdict at s if it is known or doubles give it. Otherwise begins the programs, unless
+ * the decision is bounded, and returns 0: the verdict is known when they have ended. */
+static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
+{
+    const enum fmb_verdict known = known_at(decision, s);
+    const enum fmb_verdict verdict = known ? known : look(decision, s);
     if (verdict == 0 && !decision->bounded)
         begin_programs(decision, s, false);
     decision->exhausted = decision->exhausted || (verdict == 0 && decision->bounded);
@@ -218,6 +228,7 @@ static void begin_nearest(struct turn_decision *decision, double at)
     }
     decision->corner_count = decision->nearest_count;
     decision->corners_at = at;
+    decision->crossing = NAN;
     if (decision->nearest_at != at)
         begin_programs(decision, at, true);
 }
@@ -231,6 +242,7 @@ static void begin_corners(struct turn_decision *decision)
     decision->outcome = TURN_OPEN;
     decision->corner = decision->corner_count = 0;
     decision->corners_at = -1;
+    decision->crossing = NAN;
     for (int f = 0; f < 2; f++) {
         set_features(decision, f, &of[f]);
         const struct turn_features *on = &of[f];
@@ -259,6 +271,12 @@ static void push(struct turn_decision *decision, double lo, double hi)
 }
 
 static double approach_contact(struct turn_decision *decision, double apart);
+
+/* Half of a short interval, towards the known contact. */
+static double onward(const struct turn_decision *decision)
+{
+    return decision->phase == TURN_LAST ? -0.5 * short_interval : 0.5 * short_interval;
+}
 
 /* Replaces all intervals by the interval between limit and the known contact. limit: no time before
  * it (TURN_LAST: after it) has a contact. approach: shortens the interval in doubles first. */
@@ -316,7 +334,7 @@ static void pop(struct turn_decision *decision)
 /* Divides the interval in progress. The half that is next in order is pushed last. */
 static void divide(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(interval);
+    const double middle = middle_of(decision, interval);
     pop(decision);
     if (decision->phase == TURN_LAST)
         push(decision, interval.lo, middle);
@@ -375,15 +393,18 @@ static void remember_apart(struct turn_decision *decision, struct turn_interval 
                            double middle, const struct turn_direction *direction)
 {
     turn_part(&decision->path, direction, middle, &interval.lo, &interval.hi);
-    if (turn_distance(&decision->path, direction, interval.lo, interval.hi) > 0)
-        decision->apart[decision->apart_count++ % TURN_KNOWN] = interval;
+    if (!(turn_distance(&decision->path, direction, interval.lo, interval.hi) > 0))
+        return;
+    decision->apart[decision->apart_count++ % TURN_KNOWN] = interval;
+    if (decision->phase != TURN_VERDICT)
+        decision->split = decision->phase == TURN_FIRST ? interval.hi : interval.lo;
 }
 
 /* Removes the interval in progress if the frames are known to be apart over all of it; divides it
  * if they are known to be apart at its middle. Returns whether it did either. */
 static bool skip_apart(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(interval);
+    const double middle = middle_of(decision, interval);
     bool divides = false;
     for (unsigned k = 0; k < decision->apart_count && k < TURN_KNOWN; k++) {
         const struct turn_interval apart = decision->apart[k];
@@ -398,11 +419,55 @@ static bool skip_apart(struct turn_decision *decision, struct turn_interval inte
     return divides;
 }
 
-/* Examines the middle of an interval. */
+/* Whether an interval is next to the known contact, on the side that the phase examines. */
+static bool is_next_to_contact(const struct turn_decision *decision, struct turn_interval interval)
+{
+    return decision->phase == TURN_FIRST  ? interval.hi == decision->in[0]
+           : decision->phase == TURN_LAST ? interval.lo == decision->in[1]
+                                          : false;
+}
+
+static bool is_tried(const struct turn_decision *decision, struct turn_interval interval)
+{
+    return decision->tried.lo == interval.lo && decision->tried.hi == interval.hi;
+}
+
+/* Whether directions are tried before the verdict at the middle of an interval is determined:
+ * doubles do not give it, and the direction of their search may cease to separate the frames within
+ * the interval. */
+static bool tries_first(struct turn_decision *decision, struct turn_interval interval)
+{
+    const struct turn_path *path = &decision->path;
+    struct turn_direction direction[3];
+    bool may = false;
+    if (decision->bounded || path->pair.rounded || !path->pair.usable ||
+        !is_next_to_contact(decision, interval) ||
+        interval.hi - interval.lo <= 2 * short_interval || is_tried(decision, interval) ||
+        look(decision, middle_of(decision, interval)) != 0)
+        return false;
+    const unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
+    for (unsigned k = 0; k < count && !may; k++)
+        may = turn_may_separate(path, &direction[k], 1, interval.lo, interval.hi);
+    return may;
+}
+
+/* Examines the middle of an interval. A short interval next to the known contact encloses its end.
+ */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(interval), width = interval.hi - interval.lo;
+    const double middle = middle_of(decision, interval), width = interval.hi - interval.lo;
     struct turn_direction direction[3];
+    if (width <= short_interval && is_next_to_contact(decision, interval)) {
+        decision->out[0] = fmin(decision->out[0], interval.lo);
+        decision->out[1] = fmax(decision->out[1], interval.hi);
+        pop(decision);
+        return;
+    }
+    if (tries_first(decision, interval)) {
+        decision->tried = interval;
+        begin_corners(decision);
+        return;
+    }
     const enum fmb_verdict verdict = verdict_at(decision, middle);
     const bool sure = decision->looked == middle && decision->sure;
     if (verdict == 0)
@@ -421,9 +486,8 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         }
         if (most > 0)
             return;
-        const bool next_to_contact =
-            interval.hi == decision->in[0] || interval.lo == decision->in[1];
-        const bool close = decision->path.pair.rounded && !decision->bounded && !next_to_contact &&
+        const bool close = decision->path.pair.rounded && !decision->bounded &&
+                           !is_next_to_contact(decision, interval) &&
                            most > -close_bound * decision->path.pair.reach;
         if (width > short_interval && !close) {
             if (!decision->proof)
@@ -432,13 +496,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
             return;
         }
     }
-    /* A short interval next to the known contact encloses its end. */
-    if (width <= short_interval && decision->phase == TURN_FIRST && interval.hi == decision->in[0])
-        decision->out[0] = fmin(decision->out[0], interval.lo), pop(decision);
-    else if (width <= short_interval && decision->phase == TURN_LAST &&
-             interval.lo == decision->in[1])
-        decision->out[1] = fmax(decision->out[1], interval.hi), pop(decision);
-    else if (decision->bounded)
+    if (decision->bounded)
         decision->exhausted = true;
     else if (decision->path.pair.rounded)
         begin_nearest(decision, middle);
@@ -456,14 +514,59 @@ static void take_outcome(struct turn_decision *decision, enum turn_outcome outco
         decision->outcome = outcome;
 }
 
+/* Along the direction just tried, the frames may be apart from the far end of an interval up to a
+ * crossing, and not from there to the known contact. Shortly before the crossing, this is proven.
+ * The crossing nearest to the contact is kept. */
+static void take_crossing(struct turn_decision *decision, struct turn_interval interval)
+{
+    const int late = decision->phase == TURN_LAST;
+    const double in = decision->in[late];
+    double value[6], lo = interval.lo, hi = interval.hi;
+    if (!is_next_to_contact(decision, interval))
+        return;
+    integer_round(decision->exact.value, 6, value);
+    if (!(value[late ? 5 : 0] > 0))
+        return;
+    turn_positive_part(value, late ? hi : lo, &lo, &hi);
+    const double crossing = late ? lo : hi, before = crossing - onward(decision);
+    if (fabs(decision->crossing - in) <= fabs(crossing - in) ||
+        !(interval.lo < before && before < interval.hi))
+        return;
+    if (turn_exact_positive(&decision->exact, interval.lo, interval.hi, before, late))
+        decision->crossing = crossing;
+}
+
+/* Divides an interval over which no direction separates the frames. If there is a crossing, the
+ * part before it is done, and the rest is examined shortly after it. */
+static void divide_open(struct turn_decision *decision, struct turn_interval interval)
+{
+    const double crossing = decision->crossing, before = crossing - onward(decision);
+    if (crossing == crossing) {
+        const bool late = decision->phase == TURN_LAST;
+        pop(decision);
+        decision->tried =
+            (struct turn_interval){late ? interval.lo : before, late ? before : interval.hi};
+        push(decision, decision->tried.lo, decision->tried.hi);
+        decision->split = crossing + onward(decision);
+    } else if (is_tried(decision, interval) &&
+               known_at(decision, middle_of(decision, interval)) == 0) {
+        decision->stage = TURN_LOOK;
+    } else {
+        divide(decision, interval);
+    }
+}
+
 static void try_corner(struct turn_decision *decision, struct turn_interval interval)
 {
     struct turn_exact *exact = &decision->exact;
-    const double middle = middle_of(interval);
+    const double middle = middle_of(decision, interval);
     enum turn_outcome outcome;
     if (exact->trial) {
-        if (turn_exact_step(exact, &outcome))
-            take_outcome(decision, outcome);
+        if (!turn_exact_step(exact, &outcome))
+            return;
+        take_outcome(decision, outcome);
+        if (outcome == TURN_OPEN)
+            take_crossing(decision, interval);
         return;
     }
     if (decision->corner < decision->corner_count && decision->outcome != TURN_APART &&
@@ -482,7 +585,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
     if (decision->outcome == TURN_APART)
         prove(decision, interval, NULL);
     else if (decision->outcome == TURN_OPEN && interval.hi - interval.lo > least_interval)
-        divide(decision, interval);
+        divide_open(decision, interval);
     else if (decision->outcome == TURN_OPEN && decision->corners_at != interval.hi)
         /* Frames that touch at an end of the interval may separate in the direction there. */
         begin_nearest(decision, decision->corners_at == interval.lo ? interval.hi
@@ -496,7 +599,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
  * that is undecided. */
 static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(interval);
+    const double middle = middle_of(decision, interval);
     const bool rests = decision->outcome == TURN_REST;
     const enum fmb_verdict at_lo = verdict_at(decision, interval.lo);
     const enum fmb_verdict at_hi = at_lo ? verdict_at(decision, interval.hi) : 0;
@@ -539,11 +642,13 @@ static double root_of(struct turn_path *path, const struct turn_direction *direc
                       double to)
 {
     double apart = turn_along(path, direction, from), in = turn_along(path, direction, to);
-    double z = from, last = to;
+    double z = from, last;
     int side = 0;
-    for (int k = 0; k < 30 && apart > 0 && in < 0 && fabs(z - last) > 0x1p-46; k++) {
+    for (int k = 0; k < 30 && apart > 0 && in < 0; k++) {
         last = z;
         z = from + (to - from) * (apart / (apart - in));
+        if (fabs(z - last) <= 0x1p-45)
+            break;
         const double value = turn_along(path, direction, z);
         if (value > 0) {
             from = z, apart = value;
@@ -558,6 +663,38 @@ static double root_of(struct turn_path *path, const struct turn_direction *direc
     return z;
 }
 
+/* Looks ahead of a time, towards the known contact, farther each time until doubles give a verdict.
+ * Returns it; a contact becomes the known one. */
+static enum fmb_verdict look_ahead(struct turn_decision *decision, double from, double step)
+{
+    const int late = decision->phase == TURN_LAST;
+    const double in = decision->in[late];
+    enum fmb_verdict verdict = 0;
+    for (; verdict == 0 && fabs(step) < fabs(in - from); step *= 16) {
+        verdict = look(decision, from + step);
+        if (verdict > FMB_SEPARATED)
+            decision->in[late] = from + step;
+    }
+    return verdict;
+}
+
+/* The same as approach_contact() where the bound in doubles proves nothing that close to the root.
+ */
+static double approach_root(struct turn_decision *decision, const struct turn_direction *direction,
+                            double apart, double root)
+{
+    const int late = decision->phase == TURN_LAST;
+    double lo = fmin(apart, decision->in[late]), hi = fmax(apart, decision->in[late]);
+    turn_part(&decision->path, direction, apart, &lo, &hi);
+    const double before = late ? lo : hi, step = 2 * floor((root - before) * 0x1p50) * 0x1p-50;
+    if (before == apart ||
+        !(turn_distance(&decision->path, direction, fmin(apart, before), fmax(apart, before)) > 0))
+        return apart;
+    if (step * onward(decision) > 0)
+        look_ahead(decision, before, step);
+    return before;
+}
+
 /* Encloses the end of the contact that the phase determines as tightly as doubles can: moves in[],
  * and returns the time up to which the frames are apart. apart: such a time. Along the direction of
  * the last search, the frames are apart until a root of its polynomial. Shortly before the root,
@@ -565,7 +702,6 @@ static double root_of(struct turn_path *path, const struct turn_direction *direc
 static double approach_contact(struct turn_decision *decision, double apart)
 {
     const int late = decision->phase == TURN_LAST;
-    const double onward = late ? -0.5 * short_interval : 0.5 * short_interval;
     enum fmb_verdict verdict = look(decision, apart);
     if (verdict > FMB_SEPARATED)
         decision->in[late] = apart;
@@ -574,20 +710,19 @@ static double approach_contact(struct turn_decision *decision, double apart)
         struct turn_direction direction[3];
         turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         const double root = root_of(&decision->path, direction, apart, in);
-        const double before = floor((root - onward) * 0x1p50) * 0x1p-50;
-        const double after = before + 2 * onward;
-        if (!((before - apart) * onward > 0 && (in - after) * onward > 0))
+        const double ahead = onward(decision);
+        const double before = floor((root - ahead) * 0x1p50) * 0x1p-50;
+        if (!((before - apart) * ahead > 0 && (in - before) * ahead > 2 * ahead * ahead))
             break;
         if (!(turn_distance(&decision->path, direction, fmin(apart, before), fmax(apart, before)) >
               0))
-            break;
+            return approach_root(decision, direction, apart, root);
         apart = before;
-        verdict = look(decision, after);
-        if (verdict > FMB_SEPARATED)
-            decision->in[late] = after;
+        verdict = look_ahead(decision, before, 2 * ahead);
         if (verdict != FMB_SEPARATED)
             break;
         turn_directions(&decision->path, decision->nearest.direction, 0, direction);
+        const double after = decision->looked;
         if (!(turn_distance(&decision->path, direction, fmin(apart, after), fmax(apart, after)) >
               0))
             break;
@@ -892,7 +1027,7 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->programs = NULL;
     out->exact.trial = NULL;
     out->looks = out->next_known = out->apart_count = 0;
-    out->looked = out->nearest_at = -1;
+    out->looked = out->nearest_at = out->split = out->tried.lo = -1;
     out->nearest_count = 0;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
     memset(out->nearest.direction, 0, sizeof out->nearest.direction);

@@ -89,10 +89,13 @@ struct turn_decision {
     unsigned apart_count;                   /* all ever added; the last TURN_KNOWN are kept */
     struct turn_exact exact;
     bool has_exact;
-    double nearest_at;         /* the time of the nearest point in `exact`, or -1 */
-    unsigned nearest_count;    /* directions towards this point */
-    double corners_at;         /* the time of the listed directions; -1: by vertices */
-    struct programs *programs; /* of the pose of the path */
+    struct turn_interval tried; /* directions were tried over it before its middle was examined */
+    double split;               /* a time at which to divide the interval that contains it, or -1 */
+    double crossing;            /* estimated end of the contact along a direction tried, or NAN */
+    double nearest_at;          /* the time of the nearest point in `exact`, or -1 */
+    unsigned nearest_count;     /* directions towards this point */
+    double corners_at;          /* the time of the listed directions; -1: by vertices */
+    struct programs *programs;  /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
     signed char sign[TURN_CORNERS];
     struct turn_gap gap;

@@ -36,8 +36,8 @@ void turn_exact_begin(const struct turn_path *path, struct turn_exact *out)
     memset(out, 0, sizeof *out);
     out->path = path;
     support_integers_each(&out->integers, mpz_init);
-    support_integers_set(frames, true, 0, &out->integers);
-    out->unit = out->integers.unit;
+    out->unit = support_integers_unit(frames);
+    support_integers_bodies(frames, out->unit, &out->integers);
     INTEGER_EACH_FROM(q, out, mpz_init);
     for (int f = 0; f < 2; f++) {
         struct dyadic_span span = dyadic_span_begin();
@@ -351,7 +351,7 @@ static void list_vertices(struct turn_trial *trial, const struct support_view *v
     double n[FMB_DIM_MAX];
     trial->count = count;
     if (count > SUPPORT_SMALL) {
-        integer_round_vector(trial->work.x, n);
+        integer_round(trial->work.x, 3, n);
         for (int axis = 0; axis < FMB_DIM_MAX && trial->way > 0; axis++)
             n[axis] = -n[axis];
         trial->count = support_view_list(view, n, NULL, count, trial->listed);
@@ -475,6 +475,33 @@ bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome)
             return false;
     }
     *outcome = outcome_of(exact);
+    for (int k = 0; k < 6; k++)
+        mpz_swap(exact->value[k], work->value[k]);
     end_trial(exact);
     return true;
+}
+
+/* The polynomial of the least coefficients is at most that of any two vertices. De Casteljau's
+ * subdivision at `at`, without divisions, gives its coefficients over the part. */
+bool turn_exact_positive(const struct turn_exact *exact, double lo, double hi, double at, int late)
+{
+    static const unsigned long factor[6] = {10, 2, 1, 1, 2, 10}; /* 10 / C(5, k) */
+    mpz_t b[6], weight[2];
+    bool positive = true;
+    integer_each(b, sizeof b, mpz_init);
+    integer_each(weight, sizeof weight, mpz_init);
+    integer_set_sum(weight[0], hi, -at, -52);
+    integer_set_sum(weight[1], at, -lo, -52);
+    for (int k = 0; k < 6; k++)
+        mpz_mul_ui(b[k], exact->value[late ? 5 - k : k], factor[k]);
+    for (int degree = 5; degree >= 0 && positive; degree--) {
+        positive = mpz_sgn(b[0]) > 0;
+        for (int k = 0; k < degree; k++) {
+            mpz_mul(b[k], b[k], weight[late]);
+            mpz_addmul(b[k], b[k + 1], weight[!late]);
+        }
+    }
+    integer_each(b, sizeof b, mpz_clear);
+    integer_each(weight, sizeof weight, mpz_clear);
+    return positive;
 }

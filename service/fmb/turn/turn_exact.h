@@ -27,6 +27,7 @@ struct turn_exact {
     struct support_integers integers;
     long unit; /* of lengths */
     mpz_t q[2][2][4], offset[3], drift[3], radius, nearest[2][3];
+    mpz_t value[6]; /* the least coefficients of the last direction, times a positive factor */
 };
 
 /* Sets the integers of a pair, which allocates through GMP until turn_exact_end(). */
@@ -51,5 +52,10 @@ void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners
 
 /* Performs a step of less than a millisecond. Returns whether the outcome is complete. */
 bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome);
+
+/* Returns whether the least coefficients of the last direction, over [lo, hi], prove that the
+ * frames are apart on [lo, at], or on [at, hi] if late is 1. In: lo < at < hi, multiples of 2^-52.
+ */
+bool turn_exact_positive(const struct turn_exact *exact, double lo, double hi, double at, int late);
 
 #endif

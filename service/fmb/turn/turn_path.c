@@ -468,19 +468,24 @@ static double positive_part(const double c[6], double x, double end, bool *negat
     return *negative ? in : at;
 }
 
-void turn_part(const struct turn_path *path, const struct turn_direction *direction, double at,
-               double *lo, double *hi)
+void turn_positive_part(const double c[6], double at, double *lo, double *hi)
 {
-    struct turn_polynomial of;
     const double width = *hi - *lo, x = (at - *lo) / width;
     bool negative[2];
-    set_polynomial(path, direction, 1, *lo, *hi, &of);
-    for (int k = 0; k < 6; k++)
-        of.value[k] -= 4 * binomial[k] * of.error;
-    const double before = positive_part(of.value, x, 0, &negative[0]);
-    const double after = positive_part(of.value, x, 1, &negative[1]);
+    const double before = positive_part(c, x, 0, &negative[0]);
+    const double after = positive_part(c, x, 1, &negative[1]);
     if (negative[0] || (!negative[1] && before > 0))
         *lo = ceil((at - before * x * width) * 0x1p52) * 0x1p-52;
     if (negative[1] || (!negative[0] && after > 0))
         *hi = floor((at + after * (1 - x) * width) * 0x1p52) * 0x1p-52;
+}
+
+void turn_part(const struct turn_path *path, const struct turn_direction *direction, double at,
+               double *lo, double *hi)
+{
+    struct turn_polynomial of;
+    set_polynomial(path, direction, 1, *lo, *hi, &of);
+    for (int k = 0; k < 6; k++)
+        of.value[k] -= 4 * binomial[k] * of.error;
+    turn_positive_part(of.value, at, lo, hi);
 }
