@@ -67,12 +67,6 @@ static void remember(struct turn_decision *decision, double at, enum fmb_verdict
     decision->next_known = (decision->next_known + 1) % TURN_KNOWN;
 }
 
-static unsigned vertices_of(const struct turn_decision *decision)
-{
-    const struct support_view *view = decision->path.pair.view;
-    return view[0].vertices.count + view[1].vertices.count;
-}
-
 static void begin_programs(struct turn_decision *decision, double s, bool nearest)
 {
     struct support_pair *pair = &decision->path.pair;
@@ -80,7 +74,7 @@ static void begin_programs(struct turn_decision *decision, double s, bool neares
     const bool guessed = pair->usable && decision->looked == s;
     const unsigned count = guessed ? support_columns(&decision->nearest.simplex, first) : 0;
     turn_path_pose(&decision->path, s);
-    decision->looks += LOOKS_EXACT + vertices_of(decision) / VERTICES_OF_LOOK;
+    decision->looks += LOOKS_EXACT + turn_vertices(&decision->path) / VERTICES_OF_LOOK;
     decision->programs = nearest || pair->rounded
                              ? programs_begin_nearest(pair, false, first, count)
                              : programs_begin(pair, 0, first, count);
@@ -575,7 +569,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
             const unsigned k = decision->corner++;
             if (!may_separate(decision, k, interval))
                 continue;
-            decision->looks += LOOKS_DIRECTION + vertices_of(decision) / VERTICES_OF_LOOK;
+            decision->looks += LOOKS_DIRECTION + turn_vertices(&decision->path) / VERTICES_OF_LOOK;
             turn_exact_try(exact, &decision->corners[k], decision->sign[k], interval.lo,
                            interval.hi);
             break;

@@ -154,9 +154,9 @@ static void look(struct turn_gap *gap, struct turn_piece piece)
 /* ---- All pieces ---- */
 
 /* Returns an upper bound of the distance that the points of both frames move within the error of a
- * time in seconds. A quaternion turns a frame by at most 2 |q0| |q1| / |q(s)|^2 radians for each
- * unit of s. The lengths of q0 and q1 differ by a factor of at most 4, and |q(s)|^2 is at least
- * half the square of the lesser: at most 16. */
+ * time in seconds. The position at the end passes two roundings. A quaternion turns a frame by at
+ * most 2 |q0| |q1| / |q(s)|^2 radians for each unit of s. The lengths of q0 and q1 differ by a
+ * factor of at most 4, and |q(s)|^2 is at least half the square of the lesser: at most 16. */
 static double travel_of(const struct turn_path *path)
 {
     const double duration = path->pair.frames->duration;
@@ -165,7 +165,8 @@ static double travel_of(const struct turn_path *path)
     for (int f = 0; f < 2; f++) {
         way += 16 * path->pair.view[f].reach;
         for (int axis = 0; axis < path->pair.dim; axis++)
-            way += fabs(path->position[f][1][axis] - path->position[f][0][axis]);
+            way += fabs(path->position[f][1][axis] - path->position[f][0][axis]) +
+                   0x1p-51 * (fabs(path->position[f][0][axis]) + fabs(path->position[f][1][axis]));
     }
     return late * way * (1 + 0x1p-40);
 }
@@ -180,8 +181,9 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
     out->count = out->looks = 0;
     out->work = NULL;
     out->has_good = false;
-    out->tight = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
     out->travel = travel_of(path);
+    const double most = limit * fmax(largest_coordinate(path, 0), largest_coordinate(path, 1));
+    out->tight = fmax(most - 2 * out->travel, 0.5 * most);
     out->best = gap_none();
     out->best.bounds[1] = INFINITY;
     /* The reach plus the radii bounds the distance of all points of D from the origin. */
@@ -194,16 +196,15 @@ void turn_gap_begin(struct turn_path *path, bool swapped, bool separated, double
         push(out, known, known, least, false);
 }
 
-static unsigned looks_of_step(const struct support_pair *pair)
+static unsigned looks_of_step(const struct turn_path *path)
 {
-    const unsigned vertices = pair->view[0].vertices.count + pair->view[1].vertices.count;
-    const unsigned looks = 1 + GAP_VERTICES_STEP / vertices;
+    const unsigned looks = 1 + GAP_VERTICES_STEP / turn_vertices(path);
     return looks < GAP_LOOKS_STEP ? looks : GAP_LOOKS_STEP;
 }
 
 enum gap_outcome turn_gap_step(struct turn_gap *gap, struct fmb_gap *out)
 {
-    const unsigned end = gap->looks + looks_of_step(&gap->path->pair);
+    const unsigned end = gap->looks + looks_of_step(gap->path);
     if (gap->work) {
         if (support_gap_step(gap->work, &gap->at) == GAP_UNSURE)
             return GAP_UNSURE;
@@ -224,7 +225,9 @@ enum gap_outcome turn_gap_step(struct turn_gap *gap, struct fmb_gap *out)
             gap->looks > GAP_LOOKS_MAX || gap->count + 2 > TURN_PIECES ||
             (piece.looked && piece.hi - piece.lo < shortest)) {
             *out = gap->best;
-            out->bounds[0] = fmin(least, out->bounds[0]);
+            /* What the direction proves at the rounded time. */
+            const double proved = out->bounds[0] - gap->travel;
+            out->bounds[0] = fmin(least, proved - fabs(proved) * 0x1p-52);
             if (!gap->separated) {
                 out->bounds[1] = fmin(out->bounds[1], 0);
                 out->has_witness = false;

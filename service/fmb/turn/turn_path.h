@@ -54,6 +54,12 @@ struct turn_path {
     double farthest; /* bounds the length of the offset; its error is relative to this */
 };
 
+/* Returns the number of vertices of both frames. */
+INLINE unsigned turn_vertices(const struct turn_path *path)
+{
+    return path->pair.view[0].vertices.count + path->pair.view[1].vertices.count;
+}
+
 /* Sets the pair at its beginning. The pair points to frames and into itself: not to be copied. */
 void turn_path_set(const struct frame_pair *frames, struct turn_path *out);
 
