@@ -87,9 +87,9 @@ static enum fmb_verdict look(struct turn_decision *decision, double s)
 {
     const struct support_pair *pair = &decision->path.pair;
     struct fmb_gap depth;
-    enum fmb_verdict verdict = 0;
+    enum fmb_verdict verdict = 0, cores;
     if (pair->usable) {
-        verdict = turn_look(&decision->path, s, decision->toward, &decision->nearest);
+        verdict = turn_look(&decision->path, s, decision->toward, &decision->nearest, &cores);
         if (verdict == 0 && !pair->rounded &&
             support_gap_of_pair(pair, false, &decision->nearest, FMB_OVERLAPPING, FMB_OVERLAPPING,
                                 INFINITY, &depth, NULL) == GAP_KNOWN &&

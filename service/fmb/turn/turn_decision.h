@@ -24,7 +24,9 @@
  * is fixed in neither frame.
  *
  * The contact is enclosed from both sides: on each side, the frames are apart up to a time that is
- * at most 2^-41 from a time at which they meet.
+ * at most 2^-41 from a time at which they meet. Near such an end, an interval is divided where the
+ * polynomial of a direction crosses 0: shortly before, the direction separates the frames; shortly
+ * after, they meet or another direction separates them.
  *
  * Box: the union, over pieces of the contact, of the intersections of the boxes of both frames.
  * Gap: turn_gap.h.

@@ -90,8 +90,6 @@ static void set_unsure(struct turn_gap *gap, struct support_nearest *nearest)
 {
     const struct support_pair *pair = &gap->path->pair;
     double *n = nearest->direction, good[FMB_DIM_MAX];
-    if (nearest->simplex.count == (unsigned) pair->dim + 1)
-        turn_facet_direction(pair, nearest);
     gap->at.bounds[0] = proved_by(pair, n);
     if (gap->has_good) {
         turn_normal(gap->path, &gap->good, good);
@@ -124,17 +122,15 @@ static void look(struct turn_gap *gap, struct turn_piece piece)
 {
     struct support_pair *pair = &gap->path->pair;
     struct support_nearest nearest;
-    double toward[FMB_DIM_MAX];
+    const double none[FMB_DIM_MAX] = {0}, s = 0.5 * (piece.lo + piece.hi);
     enum fmb_verdict cores = 0, verdict = 0;
     gap->next = piece;
     memset(&gap->at, 0, sizeof gap->at);
     gap->looks++;
-    turn_path_pose(gap->path, 0.5 * (piece.lo + piece.hi));
-    if (pair->usable) {
-        support_toward(pair, toward);
-        cores = support_search_from(pair, toward, INFINITY, &nearest);
-        verdict = pair->rounded ? support_round_verdict(pair, cores, &nearest) : cores;
-    }
+    if (pair->usable)
+        verdict = turn_look(gap->path, s, none, &nearest, &cores);
+    else
+        turn_path_pose(gap->path, s);
     if (gap->separated) {
         cores = verdict = FMB_SEPARATED;
     } else if (cores == 0 || verdict == 0) {

@@ -77,7 +77,10 @@ void turn_path_pose(struct turn_path *path, double s)
     }
 }
 
-void turn_facet_direction(const struct support_pair *pair, struct support_nearest *nearest)
+/* Sets the direction of a search that ended with a simplex of dim + 1 vertices, which contains the
+ * origin up to rounding: the normal of the facet nearest to the origin, pointing into the simplex.
+ */
+static void facet_direction(const struct support_pair *pair, struct support_nearest *nearest)
 {
     double least = INFINITY;
     for (int omitted = 0; omitted <= pair->dim; omitted++) {
@@ -102,7 +105,7 @@ void turn_facet_direction(const struct support_pair *pair, struct support_neares
 }
 
 enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward[FMB_DIM_MAX],
-                           struct support_nearest *nearest)
+                           struct support_nearest *nearest, enum fmb_verdict *cores)
 {
     struct support_pair *pair = &path->pair;
     double first[FMB_DIM_MAX];
@@ -110,10 +113,10 @@ enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward
     memcpy(first, toward, sizeof first);
     if (vec3_dot(first, first) == 0)
         support_toward(pair, first);
-    const enum fmb_verdict cores = support_search_from(pair, first, INFINITY, nearest);
-    if (nearest->simplex.count == (unsigned) pair->dim + 1 && cores == 0)
-        turn_facet_direction(pair, nearest);
-    return pair->rounded ? support_round_verdict(pair, cores, nearest) : cores;
+    *cores = support_search_from(pair, first, INFINITY, nearest);
+    if (nearest->simplex.count == (unsigned) pair->dim + 1 && *cores == 0)
+        facet_direction(pair, nearest);
+    return pair->rounded ? support_round_verdict(pair, *cores, nearest) : *cores;
 }
 
 /* ---- Directions ---- */
