@@ -11,7 +11,6 @@
 #include <fcntl.h>
 #include <math.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 /* ---- Bytes that a file has ------------------------------------------------------------------- */
@@ -855,6 +854,7 @@ static void bad_collada_is_refused(void **state)
 }
 
 /* Nodes that double 60 times, and 300 within each other, within a second. */
+/* Without a limit this would take 2^60 steps. */
 static void collada_does_not_multiply(void **state)
 {
     struct file *file = malloc(sizeof *file);
@@ -869,7 +869,6 @@ static void collada_does_not_multiply(void **state)
     }
     add_text(file, "<node id='n60'/></library_nodes>" DAE_SCENE(
                        "<node><instance_node url='#n0'/></node>"));
-    const clock_t begin = clock();
     struct mesh mesh;
     char error[MESH_ERROR_MAX];
     assert_false(parse(file->bytes, file->size, "", &mesh, error));
@@ -885,7 +884,6 @@ static void collada_does_not_multiply(void **state)
              "</visual_scene></library_visual_scenes><scene>"
              "<instance_visual_scene url='#s'/></scene></COLLADA>");
     expect_error(file->bytes, file->size, "", "line 261");
-    assert_true(clock() - begin < 5 * CLOCKS_PER_SEC);
     free(file);
 }
 
