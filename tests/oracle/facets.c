@@ -148,15 +148,18 @@ static void raise_to(mpq_t most, rational_vector v)
     mpq_clear(size);
 }
 
-/* out := v / scale, each axis rounded towards 0. */
+/* out := v / scale, each axis rounded towards 0. The quotient is not reduced: that would take most
+ * of the time of facets. */
 static void divide(rational_vector v, const mpq_t scale, vector out)
 {
     mpq_t ratio;
     mpq_init(ratio);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        mpq_set_ui(ratio, 0, 1);
-        if (mpq_sgn(scale) != 0)
-            mpq_div(ratio, v[axis], scale);
+        out[axis] = 0;
+        if (mpq_sgn(scale) == 0)
+            continue;
+        mpz_mul(mpq_numref(ratio), mpq_numref(v[axis]), mpq_denref(scale));
+        mpz_mul(mpq_denref(ratio), mpq_denref(v[axis]), mpq_numref(scale));
         out[axis] = mpq_get_d(ratio);
     }
     mpq_clear(ratio);

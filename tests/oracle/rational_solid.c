@@ -24,8 +24,17 @@ void rational_solid_clear(struct rational_solid *solid)
     free(solid->column);
 }
 
+static bool is_whole(const mpq_t x)
+{
+    return mpz_cmp_ui(mpq_denref(x), 1) == 0;
+}
+
 void rational_add_product(mpq_t sum, int sign, const mpq_t x, const mpq_t y)
 {
+    if (is_whole(sum) && is_whole(x) && is_whole(y)) { /* as most are: nothing is reduced */
+        (sign < 0 ? mpz_submul : mpz_addmul)(mpq_numref(sum), mpq_numref(x), mpq_numref(y));
+        return;
+    }
     mpq_t product;
     mpq_init(product);
     mpq_mul(product, x, y);
