@@ -49,7 +49,7 @@ test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh p
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders)))
 units := $(O)/units.a
-$(units): $(filter-out %/slab_truth.o %/slab_kernel.o %/leap_clock.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
+$(units): $(filter-out %/slab_kernel.o %/leap_clock.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
 measuring := $(O)/measuring.a
 $(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(addprefix tests/,bench bus robot)))
 $(shared) $(units) $(measuring):
@@ -77,14 +77,16 @@ $(B)/checked $(B)/tests/test_checked: $(checked_kernels)
 
 # ---- Unit tests ----
 
-# The code that these test is compiled without sanitizers in all modes, so only the release build has them.
-bare_tests := test_box_bounds test_checked test_kernels
-unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(bare_tests)), \
+# Only the release build has these: the code that they test is compiled without sanitizers in all modes, or they count
+# work, simulate clients or test the oracle, and other tests execute the same code of the product.
+release_tests := test_checked test_kernels test_engine_work test_hull_work test_fairness test_oracle \
+	test_oracle_rounded test_oracle_turning
+unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(release_tests)), \
 	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
 unit_tests := $(unit_names:%=$(B)/tests/%)
-internal_tests := $(addprefix $(B)/tests/,test_box_bounds test_engine_batch \
-	test_engine_tree test_engine_triangle test_limbs test_outward test_kernels \
-	test_placing test_engine_work test_hull_frame test_hull_verdict test_hull_bounds \
+internal_tests := $(addprefix $(B)/tests/,test_engine_batch \
+	test_engine_tree test_outward test_kernels \
+	test_placing test_engine_work test_hull_frame test_hull_verdict \
 	test_hull_gap test_hull_work test_hull_certificate test_checked)
 comma := ,
 wraps = $(addprefix -Wl$(comma)--wrap=,$1)
@@ -122,7 +124,7 @@ $(O)/tests/unit/%.o: flags += -Wno-unused-parameter
 fast_asan := -O0 -fno-sanitize=undefined -fno-sanitize=fuzzer-no-link
 fast_release := -O1
 $(unit_names:%=$(O)/tests/unit/%.o): flags += $(fast_$(MODE))
-$(internal_tests): $(O)/tests/unit/slab_truth.o $(units) $(shared) $(client) $(product) $(engine)
+$(internal_tests): $(units) $(shared) $(client) $(product) $(engine)
 $(filter-out $(internal_tests),$(unit_tests)): $(units) $(shared) $(client) $(product) $(B)/libfmb.a
 $(addprefix $(B)/tests/,test_bus test_client_bad test_client_raw test_server): $(O)/tests/unit/leap_clock.o
 $(unit_tests): libraries += -lcmocka

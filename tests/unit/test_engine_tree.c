@@ -754,6 +754,55 @@ static void queries_that_are_not_supported_are_refused(void **state)
     scene_close(&deep);
 }
 
+/* ---- Boxes that a program gives ---- */
+
+/* In the plane the third numbers of boxes are not read. */
+static void put_flat_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
+{
+    const double(*at)[2] = context;
+    for (int axis = 0; axis < 2; axis++)
+        box[0][axis] = box[1][axis] = at[index][axis];
+    box[0][2] = NAN;
+    box[1][2] = -INFINITY;
+}
+
+static void boxes_in_the_plane(void **state)
+{
+    static const double at[4][2] = {{0, 0}, {1, 0}, {0, 0}, {1, -0.0}};
+    static const unsigned expected[2][2] = {{0, 2}, {1, 3}};
+    const struct fmb_boxes boxes = {2, put_flat_box, at, NULL};
+    struct fmb_tree tree;
+    struct fmb_tree_cursor cursor = {0};
+    unsigned pairs[FMB_TREE_CAPACITY_MIN][2];
+    size_t count;
+    void *memory = malloc(fmb_tree_bytes(4));
+    assert_int_equal(fmb_tree_build(&boxes, 4, 1, memory, &tree), FMB_OK);
+    assert_int_equal(fmb_tree_pairs(&tree, &tree, &cursor, pairs, FMB_TREE_CAPACITY_MIN, &count),
+                     FMB_OK);
+    assert_int_equal(count, 2);
+    assert_memory_equal(pairs, expected, sizeof expected);
+    free(memory);
+}
+
+static void boxes_that_cannot_be_are_refused(void **state)
+{
+    static const double bad[] = {-1, -0x1p-1074, INFINITY, NAN};
+    struct fmb_boxes boxes = {3, put_flat_box, NULL, NULL};
+    struct fmb_tree tree;
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        tree.frame_count = 7;
+        assert_int_equal(fmb_tree_build(&boxes, 3, bad[i], NULL, &tree), FMB_BAD_DURATION);
+        assert_int_equal(tree.frame_count, 0);
+    }
+    assert_int_equal(fmb_tree_build(&boxes, UINT_MAX, 1, NULL, &tree), FMB_OVER_LIMIT);
+    assert_int_equal(fmb_tree_build(&boxes, 0, 1, NULL, &tree), FMB_OK);
+    assert_int_equal(tree.frame_count, 0);
+    boxes.dim = 4;
+    assert_int_equal(fmb_tree_build(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
+    boxes.dim = 1;
+    assert_int_equal(fmb_tree_build(&boxes, 3, 1, NULL, &tree), FMB_WRONG_DIMENSION);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -765,6 +814,8 @@ int main(void)
         cmocka_unit_test(queries_cost_no_more_than_a_few_nodes_a_level),
         cmocka_unit_test(boxes_with_one_centre_cost_what_is_found),
         cmocka_unit_test(queries_that_are_not_supported_are_refused),
+        cmocka_unit_test(boxes_in_the_plane),
+        cmocka_unit_test(boxes_that_cannot_be_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

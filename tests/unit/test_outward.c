@@ -1,18 +1,18 @@
 /* What is rounded outward is outside, and what is inward inside: sums, quotients and cuts against
- * rational numbers; the contact and the box that doubles give against the oracle. */
+ * rational numbers. */
 
 #include "unit.h"
 
 #include <math.h>
 
-#include "certified.h"
 #include "clip.h"
 #include "draw.h"
-#include "limbs.h"
-#include "question.h"
 #include "interval.h"
+#include "pair_draw.h"
+#include "placed_pair.h"
+#include "prepared.h"
 #include "referee.h"
-#include "slab_truth.h"
+#include "slabs.h"
 
 static mpq_t exact, scratch[2];
 
@@ -222,211 +222,15 @@ static void cuts_within_errors_are_outside_and_inside(void **state)
     }
 }
 
-/* ---- Contact and box ---- */
+/* ---- Slabs ---- */
 
-static double draw_coordinate(struct draw *draw)
+static bool prepare_slabs(const struct pair *pair, struct slabs_pair *out)
 {
-    return draw_between(draw, -2, 1);
-}
-
-static void draw_solid(struct draw *draw, struct solid *solid)
-{
-    for (int axis = 0; axis < solid->dim; axis++) {
-        for (int i = 0; i < solid->dim; i++)
-            solid->component[i][axis] = draw_coordinate(draw);
-        solid->origin[axis] = draw_coordinate(draw);
-        solid->velocity[axis] = draw_coordinate(draw);
-    }
-}
-
-/* A point of each in one place, at some time of the window or near it. */
-static void bring_together(struct draw *draw, struct question *question)
-{
-    const double tau = draw_int(draw, 0, 2) ? draw_uniform(draw, 0, 1) : draw_int(draw, 0, 1);
-    for (int axis = 0; axis < question->a.dim; axis++)
-        question->b.origin[axis] = question->a.origin[axis];
-    for (int i = 0; i < question->a.dim; i++) {
-        const double of_a = draw_int(draw, 0, 4) / 8.0, of_b = draw_int(draw, 0, 4) / 8.0;
-        for (int axis = 0; axis < question->a.dim; axis++)
-            question->b.origin[axis] +=
-                of_a * question->a.component[i][axis] - of_b * question->b.component[i][axis];
-    }
-    for (int axis = 0; axis < question->a.dim; axis++)
-        question->b.origin[axis] -=
-            tau * question->duration * (question->b.velocity[axis] - question->a.velocity[axis]);
-}
-
-static struct question draw_meeting(struct draw *draw)
-{
-    const int dim = draw_int(draw, 2, 3);
-    const bool moving = draw_int(draw, 0, 3) > 0;
-    struct question question = {{.dim = dim, .moving = moving}, {.dim = dim, .moving = moving}, 1};
-    question.a.shape = draw_coin(draw) ? FMB_CUBOID : FMB_TETRAHEDRON;
-    question.b.shape = draw_coin(draw) ? FMB_CUBOID : FMB_TETRAHEDRON;
-    draw_solid(draw, &question.a);
-    draw_solid(draw, &question.b);
-    if (draw_coin(draw))
-        question.duration = fabs(draw_between(draw, -3, 3)) + 0x1p-5;
-    return question;
-}
-
-static void as_it_comes(struct draw *draw, struct question *question)
-{
-    (void) draw, (void) question;
-}
-
-static void far_from_the_origin(struct draw *draw, struct question *question)
-{
-    for (int axis = 0; axis < question->a.dim; axis++) {
-        const double far = draw_between(draw, 0, 30);
-        question->a.origin[axis] += far;
-        question->b.origin[axis] += far;
-    }
-}
-
-static void fast(struct draw *draw, struct question *question)
-{
-    const int e = draw_int(draw, 1, 40);
-    for (int axis = 0; axis < question->a.dim; axis++)
-        question->b.velocity[axis] = ldexp(question->b.velocity[axis], e);
-}
-
-static void slow(struct draw *draw, struct question *question)
-{
-    const int e = draw_int(draw, 1, 60);
-    for (int axis = 0; axis < question->a.dim; axis++) {
-        question->a.velocity[axis] = ldexp(question->a.velocity[axis], -e);
-        question->b.velocity[axis] = ldexp(question->b.velocity[axis], -e);
-    }
-}
-
-static void thin(struct draw *draw, struct question *question)
-{
-    struct solid *solid = draw_coin(draw) ? &question->a : &question->b;
-    const int e = draw_int(draw, 1, 30);
-    for (int axis = 0; axis < question->a.dim; axis++)
-        solid->component[0][axis] = ldexp(solid->component[0][axis], -e);
-    if (draw_coin(draw)) /* or long, and nearly parallel to another */
-        for (int axis = 0; axis < question->a.dim; axis++)
-            solid->component[0][axis] += solid->component[1][axis];
-}
-
-static void nearly_parallel(struct draw *draw, struct question *question)
-{
-    const double turn = draw_between(draw, -40, -4);
-    for (int i = 0; i < question->a.dim; i++)
-        for (int axis = 0; axis < question->a.dim; axis++)
-            question->b.component[i][axis] =
-                question->a.component[i][axis] +
-                turn * question->a.component[(i + 1) % question->a.dim][axis];
-}
-
-static void nearly_equal_velocities(struct draw *draw, struct question *question)
-{
-    for (int axis = 0; axis < question->a.dim; axis++)
-        question->b.velocity[axis] =
-            question->a.velocity[axis] * (1 + draw_int(draw, -2, 2) * 0x1p-52);
-}
-
-static void along_the_axes(struct draw *draw, struct question *question)
-{
-    (void) draw;
-    for (int i = 0; i < question->a.dim; i++)
-        for (int axis = 0; axis < question->a.dim; axis++)
-            if (axis != i)
-                question->a.component[i][axis] = question->b.component[i][axis] = 0;
-}
-
-static void of_few_bits(struct draw *draw, struct question *question)
-{
-    struct solid *solids[2] = {&question->a, &question->b};
-    for (int f = 0; f < 2; f++)
-        for (int axis = 0; axis < question->a.dim; axis++) {
-            for (int i = 0; i < question->a.dim; i++)
-                solids[f]->component[i][axis] = draw_int(draw, -8, 8) / 4.0;
-            solids[f]->velocity[axis] = draw_int(draw, -8, 8) / 4.0;
-            solids[f]->origin[axis] = draw_int(draw, -8, 8) / 4.0;
-        }
-    question->duration = draw_int(draw, 1, 8) / 4.0;
-}
-
-struct family {
-    const char *name;
-    void (*change)(struct draw *draw, struct question *question);
-    bool whole; /* origins are multiples of 1/8 */
-};
-
-static const struct family families[] = {
-    {"as_it_comes", as_it_comes, false},
-    {"far_from_the_origin", far_from_the_origin, false},
-    {"fast", fast, false},
-    {"slow", slow, false},
-    {"thin", thin, false},
-    {"nearly_parallel", nearly_parallel, false},
-    {"nearly_equal_velocities", nearly_equal_velocities, false},
-    {"along_the_axes", along_the_axes, false},
-    {"of_few_bits", of_few_bits, true},
-};
-
-struct tally {
-    long met, contacts, boxes;
-    double contact, box; /* how far out the worst end was */
-};
-
-/* Whether doubles give the box. */
-static bool box_of(const struct frame_pair *pair, double box[2][FMB_DIM_MAX])
-{
-    struct fmb_prepared frame[2];
-    struct fmb_answer answer;
-    prepared_set(pair->a, &frame[0]);
-    prepared_set(pair->b, &frame[1]);
-    const bool known =
-        certified_box(&frame[0], &frame[1], pair->duration, FMB_WANT_BOX, &answer) == 0;
-    if (known)
-        memcpy(box, answer.box, sizeof answer.box);
-    return known;
-}
-
-/* *answer has the interval and the box of the exact method, which those of doubles replace. */
-static void decide_in_doubles(const struct ready *ready, const struct slabs_pair *slabs,
-                              bool rounds, struct dyadic_span span, struct fmb_answer *answer,
-                              bool good[2])
-{
-    const struct frame_pair frames = pair_frames(&ready->pair);
-    struct fmb_answer doubles = *answer;
-    good[0] =
-        slabs->motion.drifts && contact_of(&frames, slabs, rounds, span, true, doubles.contact);
-    good[1] = box_of(&frames, doubles.box);
-    if (good[0])
-        memcpy(answer->contact, doubles.contact, sizeof answer->contact);
-    if (good[1])
-        memcpy(answer->box, doubles.box, sizeof answer->box);
-}
-
-/* rounds is what it is, or true, which holds for any pair. */
-static void compare(const struct question *question, const struct ready *ready, bool may_round,
-                    const struct oracle_answer *truth, struct tally *tally)
-{
-    struct slabs_pair slabs;
-    struct fmb_answer answer;
-    struct oracle_excess contact, box;
-    char why[200];
-    bool good[2];
-    if (!slab_truth_prepare(&ready->pair, &slabs))
-        return;
-    const struct frame_pair frames = pair_frames(&ready->pair);
-    const struct dyadic_span span = limbs_span_of(&frames);
-    const bool rounds = may_round || !limbs_never_round(&slabs, span);
-    referee_decide(question, &answer);
-    decide_in_doubles(ready, &slabs, rounds, span, &answer, good);
-    if (!oracle_agrees(truth, &ready->pair, &answer, ORACLE_DESIGN, why, sizeof why))
-        referee_fail(question, why);
-    oracle_measure(truth, &ready->pair, &answer, &contact, &box);
-    tally->met++;
-    tally->contacts += good[0];
-    tally->boxes += good[1];
-    tally->contact = fmax(tally->contact, contact.out);
-    tally->box = fmax(tally->box, box.out);
+    const struct frame_pair frames = pair_frames(pair);
+    struct fmb_prepared a, b;
+    prepared_set(frames.a, &a);
+    prepared_set(frames.b, &b);
+    return slabs_prepare(&a, &b, pair->duration, out);
 }
 
 /* The slabs of a pair depend on nothing that was in memory before. */
@@ -435,17 +239,19 @@ static void slabs_are_set_whole(void **state)
     struct draw draw;
     draw_begin(&draw, "slabs_are_set_whole");
     for (long n = draw_sample(2000); n > 0; n--) {
-        const struct question question = draw_meeting(&draw);
+        const struct cell cell = pair_draw_cell(&draw);
+        struct question question;
         struct ready ready;
         struct slabs_pair pair[2];
         static struct slab_value slab[2][SLABS_MAX];
         int count[2];
+        pair_draw(&draw, &cell, &question);
         referee_ready(&question, &ready);
         for (int i = 0; i < 2; i++) {
             memset(&pair[i], i ? 0x3f : 0xff, sizeof pair[i]);
             memset(slab[i], i ? 0x3f : 0xff, sizeof slab[i]);
             count[i] =
-                slab_truth_prepare(&ready.pair, &pair[i]) ? slabs_list(&pair[i], true, slab[i]) : 0;
+                prepare_slabs(&ready.pair, &pair[i]) ? slabs_list(&pair[i], true, slab[i]) : 0;
         }
         assert_int_equal(count[0], count[1]);
         for (int k = 0; k < count[0]; k++) {
@@ -457,37 +263,9 @@ static void slabs_are_set_whole(void **state)
     }
 }
 
-static void doubles_hold_contact_and_box(void **state)
-{
-    const struct family *family = *state;
-    struct draw draw;
-    struct oracle_answer truth;
-    struct tally tally = {0};
-    draw_begin(&draw, family->name);
-    oracle_init(&truth);
-    for (long n = draw_sample(2000); n > 0; n--) {
-        struct question question = draw_meeting(&draw);
-        struct ready ready;
-        family->change(&draw, &question);
-        bring_together(&draw, &question);
-        for (int axis = 0; family->whole && axis < question.a.dim; axis++)
-            question.b.origin[axis] = rint(8 * question.b.origin[axis]) / 8;
-        referee_ready(&question, &ready);
-        oracle_decide(&ready.pair, FMB_WANT_BOX, &truth);
-        if (truth.verdict == FMB_SEPARATED)
-            continue;
-        compare(&question, &ready, false, &truth, &tally);
-        compare(&question, &ready, true, &truth, &tally);
-    }
-    oracle_clear(&truth);
-    printf("# %s: %ld met, %ld contacts at most %.3g out, %ld boxes at most %.3g out\n",
-           family->name, tally.met, tally.contacts, tally.contact, tally.boxes, tally.box);
-    assert_true(tally.contacts > 0 && tally.boxes > 0);
-}
-
 int main(void)
 {
-    const struct CMUnitTest numbers[] = {
+    const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_hold_the_exact_one),
         cmocka_unit_test(sums_of_ranges_hold_those_of_their_ends),
         cmocka_unit_test(quotients_hold_the_exact_one),
@@ -495,12 +273,5 @@ int main(void)
         cmocka_unit_test(cuts_within_errors_are_outside_and_inside),
         cmocka_unit_test(slabs_are_set_whole),
     };
-    struct CMUnitTest tests[COUNT(numbers) + COUNT(families)];
-    memcpy(tests, numbers, sizeof numbers);
-    for (size_t i = 0; i < COUNT(families); i++)
-        tests[COUNT(numbers) + i] =
-            (struct CMUnitTest){.name = families[i].name,
-                                .test_func = doubles_hold_contact_and_box,
-                                .initial_state = (void *) (uintptr_t) &families[i]};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
