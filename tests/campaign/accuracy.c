@@ -19,6 +19,7 @@ static const long usual_pairs = 20000;
 static const struct option option_list[] = {{"pairs", required_argument, NULL, OPTION_PAIRS},
                                             {"family", required_argument, NULL, OPTION_FAMILY},
                                             {"seed", required_argument, NULL, OPTION_SEED},
+                                            {"every", required_argument, NULL, OPTION_EVERY},
                                             {"workers", required_argument, NULL, OPTION_WORKERS},
                                             {"json", required_argument, NULL, OPTION_JSON},
                                             {"help", no_argument, NULL, OPTION_HELP},
@@ -35,6 +36,7 @@ static void help(void)
         "  --pairs N      of each family and cell: dimension, motion, shapes (%ld)\n"
         "  --family NAME  this family, or those whose names begin so up to a dash; may be\n"
         "                 repeated (all)\n"
+        "  --every N      one cell in N of each family (1: all)\n"
         "  --seed S       what to draw from\n"
         "  --workers N    threads (one a processor); the counts do not depend on it\n"
         "  --json FILE    write the counts and times of all methods there\n"
@@ -58,7 +60,7 @@ static void add_cells(struct campaign *campaign, const struct family *family)
 {
     struct cell cell[CELL_OF_ALL_SHAPES];
     const int count = family_cells(family, cell);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i += (int) campaign->options->every) {
         struct measure *measure = &campaign->measure[campaign->measures++];
         measure->family = family;
         measure->cell = cell[i];

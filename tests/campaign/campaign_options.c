@@ -75,6 +75,7 @@ static bool take(const struct options_program *program, int option, char **argv,
 {
     switch (option) {
     case OPTION_PAIRS: return take_integer(program, "pairs", 1, INT_MAX, &out->pairs);
+    case OPTION_EVERY: return take_integer(program, "every", 1, INT_MAX, &out->every);
     case OPTION_WORKERS: return take_integer(program, "workers", 1, 256, &out->workers);
     case OPTION_SEED: return take_seed(program, &out->seed);
     case OPTION_FAMILY: return take_family(program, out);
@@ -87,8 +88,8 @@ static bool take(const struct options_program *program, int option, char **argv,
 int options_parse(const struct options_program *program, int argc, char **argv, struct options *out)
 {
     int option;
-    *out =
-        (struct options){.pairs = program->pairs, .workers = workers_usual(), .seed = usual_seed};
+    *out = (struct options){
+        .pairs = program->pairs, .every = 1, .workers = workers_usual(), .seed = usual_seed};
     opterr = 0;
     while ((option = getopt_long(argc, argv, ":", program->options, NULL)) != -1) {
         if (option == OPTION_HELP) {

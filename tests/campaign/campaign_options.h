@@ -16,6 +16,7 @@ enum { OPTIONS_FAMILIES_MAX = 200 };
 struct options {
     long pairs;
     long workers;
+    long every; /* one cell in so many of each family */
     uint64_t seed;
     const char *json; /* NULL: none */
     const struct family *family[OPTIONS_FAMILIES_MAX];
@@ -30,7 +31,15 @@ struct options_program {
     const struct family *(*list)(size_t index); /* NULL: family_all_at() */
 };
 
-enum { OPTION_PAIRS = 1, OPTION_SEED, OPTION_WORKERS, OPTION_FAMILY, OPTION_JSON, OPTION_HELP };
+enum {
+    OPTION_PAIRS = 1,
+    OPTION_SEED,
+    OPTION_WORKERS,
+    OPTION_EVERY,
+    OPTION_FAMILY,
+    OPTION_JSON,
+    OPTION_HELP
+};
 
 /* On output: OPTIONS_RUN and *out, or the exit code where nothing is to be run. */
 enum { OPTIONS_RUN = -1 };

@@ -84,12 +84,14 @@ static void put_families(const struct report *report, FILE *out)
     fprintf(out, " \"families\": [");
     for (size_t i = 0; i < report->measures; i++) {
         const struct family *family = report->measure[i].family;
+        struct cell cell[CELL_OF_ALL_SHAPES];
         char text[32];
         if (family == last)
             continue;
-        fprintf(out, "%s\n  {\"name\": \"%s\", \"summary\": \"%s\", \"verdict\": %s}",
+        fprintf(out,
+                "%s\n  {\"name\": \"%s\", \"summary\": \"%s\", \"verdict\": %s, \"cells\": %d}",
                 last ? "," : "", family->name, family->summary,
-                verdict_or_null(family->verdict, text));
+                verdict_or_null(family->verdict, text), family_cells(family, cell));
         last = family;
     }
     fprintf(out, "],\n");

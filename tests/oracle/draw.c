@@ -15,11 +15,22 @@ void draw_begin(struct draw *draw, const char *what)
     fflush(stdout);
 }
 
+static bool is_fast(void)
+{
+    const char *fast = getenv("FMB_FAST");
+    return fast && strcmp(fast, "0") != 0;
+}
+
+int draw_step(int fast)
+{
+    return is_fast() ? fast : 1;
+}
+
 long draw_sample(long usual)
 {
-    const char *fast = getenv("FMB_FAST"), *times = getenv("FMB_SAMPLE");
+    const char *times = getenv("FMB_SAMPLE");
     double count = (double) usual;
-    if (fast && strcmp(fast, "0") != 0)
+    if (is_fast())
         count /= 8;
     if (times)
         count *= strtod(times, NULL);

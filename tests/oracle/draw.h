@@ -17,6 +17,9 @@ void draw_begin(struct draw *draw, const char *what);
  * 0); FMB_SAMPLE times as many where that is set. At least 1. */
 long draw_sample(long usual);
 
+/* 1, or fast where FMB_FAST is set: how far to step through a list of cases. */
+int draw_step(int fast);
+
 uint64_t draw_bits(struct draw *draw);
 bool draw_coin(struct draw *draw);
 int draw_int(struct draw *draw, int least, int most); /* both included */

@@ -7,6 +7,7 @@
 
 #include "answer.h"
 #include "answer_now.h"
+#include "draw.h"
 #include "replay_draw.h"
 #include "wire.h"
 
@@ -822,8 +823,9 @@ static void a_named_pair_that_is_ignored_keeps_its_place(void **state)
 
 static void every_changed_byte_is_found(void **state)
 {
+    const int rounds = draw_step(4) == 1 ? 150 : 40;
     int read = 0;
-    for (int round = 0; round < 150; round++) {
+    for (int round = 0; round < rounds; round++) {
         draw_scene();
         answer_now();
         for (size_t at = 0; at < now_size; at++)
@@ -836,7 +838,7 @@ static void every_changed_byte_is_found(void **state)
                 read++;
             }
     }
-    assert_in_range(read, 10000, 1000000);
+    assert_in_range(read, 60 * rounds, 6000 * rounds);
 }
 
 static void expect_whole(void)
