@@ -202,7 +202,7 @@ objects_in = $(patsubst %.c,$(O)/%.o,$(sort $(wildcard $(addsuffix /*.c,$1))))
 x86 := $(filter x86_64%,$(shell $(CC) -dumpmachine 2> /dev/null || uname -m))
 filter := $(O)/service/fmb/filter
 # Vectors are passed between functions of one file alone.
-$(filter)/%.o $(O)/tests/unit/kernels/%.o $(O)/slabs/%.o: flags += -Wno-psabi
+$(filter)/%.o $(O)/tests/unit/kernels/%.o: flags += -Wno-psabi
 $(filter)/%_avx2.o: needed += -mavx2 -mfma
 $(filter)/%_avx512.o: needed += -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 verdict_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard $(addprefix service/fmb/filter/,verdicts_*.c single_*.c)))

@@ -49,7 +49,7 @@ test_folders := $(addprefix tests/,encode oracle hostile campaign checked mesh p
 shared := $(O)/shared.a
 $(shared): $(filter-out $(mains:%=$(O)/tests/%.o),$(call objects_in,$(test_folders)))
 units := $(O)/units.a
-$(units): $(filter-out %/slab_kernel.o %/leap_clock.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
+$(units): $(filter-out %/leap_clock.o $(O)/tests/unit/test_%,$(call objects_in,tests/unit))
 measuring := $(O)/measuring.a
 $(measuring): $(filter-out $(mains:%=$(O)/tests/%.o) %/peers.o,$(call objects_in,$(addprefix tests/,bench bus robot)))
 $(shared) $(units) $(measuring):
@@ -80,7 +80,7 @@ $(B)/checked $(B)/tests/test_checked: $(checked_kernels)
 # Only the release build has these: the code that they test is compiled without sanitizers in all modes, or they count
 # work, simulate clients or test the oracle, and other tests execute the same code of the product.
 release_tests := test_checked test_kernels test_engine_work test_hull_work test_fairness test_oracle \
-	test_oracle_rounded test_oracle_turning
+	test_oracle_rounded
 unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(release_tests)), \
 	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
 unit_tests := $(unit_names:%=$(B)/tests/%)
@@ -106,9 +106,6 @@ wraps_path-planted := $(wraps_test_path)
 
 # Kernels are optimised in all modes.
 compile_bare = $(subst $(mode_flags_$(MODE)),$(mode_flags_release),$(compile)) $(sees)
-$(O)/slabs/kernel.o: tests/unit/slab_kernel.c $(O)/settings
-	@mkdir -p $(@D)
-	$(compile_bare) -DLANES=1
 
 # Kernels of eight lanes in vectors that every machine has; and with bounds that are wrong.
 tested_kernels := $(patsubst %.c,$(O)/%.o,$(wildcard tests/unit/kernels/*.c))
@@ -116,7 +113,7 @@ $(tested_kernels): flags += -O1
 $(tested_kernels): $(O)/%.o: %.c $(O)/settings
 	@mkdir -p $(@D)
 	$(compile_bare) -ffp-contract=fast
-$(B)/tests/test_kernels: $(tested_kernels) $(O)/slabs/kernel.o
+$(B)/tests/test_kernels: $(tested_kernels)
 
 # cmocka hands each test a state, which few read.
 $(O)/tests/unit/%.o: flags += -Wno-unused-parameter

@@ -18,7 +18,6 @@
 #include "question.h"
 #include "referee.h"
 #include "kernel.h"
-#include "slab_kernel.h"
 #include "solids.h"
 
 /* Of tests/unit/kernels. */
@@ -554,79 +553,6 @@ static void expect_same_for_all(struct draw *draw, struct pool *pool, const stru
         if (is_symmetric(pool->kind))
             swap_pool(pool);
     }
-}
-
-/* ---- Ends of the time ---- */
-
-/* The slab of an end: its distance from the bound at s is sign (bound - s swing), in parts of the
- * error, which is 1 at a true outer end and -1 at an inner one. */
-struct end {
-    double bound, swing, error, sign;
-};
-
-/* Whether that distance at s, no farther than -1 or 1, is at least 1 - spare (outer), or at most
- * spare - 1; spare: what rounding and the longer swing may take of the error. */
-static bool end_holds(const struct end *end, double s, bool outer, double spare)
-{
-    mpq_t at, number, limit;
-    mpq_inits(at, number, limit, NULL);
-    mpq_set_d(at, s < -1 ? -1 : s > 1 ? 1 : s);
-    mpq_set_d(number, end->swing);
-    mpq_mul(at, at, number);
-    mpq_set_d(number, end->bound);
-    mpq_sub(at, number, at);
-    if ((end->sign < 0) == outer)
-        mpq_neg(at, at);
-    mpq_set_d(limit, end->error);
-    mpq_set_d(number, spare);
-    mpq_sub(limit, limit, number);
-    const bool holds = mpq_cmp(at, limit) >= 0;
-    mpq_clears(at, number, limit, NULL);
-    return holds;
-}
-
-/* One that lies before the window, or after it, says nothing. */
-static bool ends_hold(const double ends[2], bool enter, const struct end *end, double slack,
-                      double spare)
-{
-    const double outer = enter ? ends[0] - slack : ends[0] + slack;
-    const double inner = enter ? ends[1] + slack : ends[1] - slack;
-    const bool before = enter ? outer <= -1 : outer >= 1, after = enter ? inner > 1 : inner < -1;
-    return (before || end_holds(end, outer, true, spare)) &&
-           (after || end_holds(end, inner, false, spare));
-}
-
-/* Slabs that are anything from perpendicular to nearly parallel to the drift, with ends near the
- * window. Slabs whose errors are larger than the way matter most. */
-static void ends_of_the_time_are_covered(void **state)
-{
-    struct draw draw;
-    long without_slack = 0, without_spare = 0;
-    draw_begin(&draw, "ends_of_the_time_are_covered");
-    for (long n = draw_sample(100000); n > 0; n--) {
-        const double swing = draw_uniform(&draw, 1, 2) * (draw_coin(&draw) ? 1 : -1);
-        const double error = ldexp(draw_uniform(&draw, 1, 2), draw_int(&draw, -70, 40));
-        const double length = fabs(swing) + 0x1p-10 * error;
-        const double t = error / length, spare = (0x1p-10 + 7 * 0x1p-53) * error + 0x1p-53 * length;
-        const double enter_at = draw_uniform(&draw, -1.2, 1.2) + (draw_coin(&draw) ? t : -t);
-        const double leave_at = draw_uniform(&draw, -1.2, 1.2) + (draw_coin(&draw) ? t : -t);
-        const double low = length * (swing > 0 ? enter_at : -leave_at);
-        const double high = length * (swing > 0 ? leave_at : -enter_at);
-        const struct end of_low = {low, swing, error, 1}, of_high = {high, swing, error, -1};
-        const struct end *first = swing > 0 ? &of_low : &of_high;
-        const struct end *last = swing > 0 ? &of_high : &of_low;
-        double enter[2], leave[2];
-        if (low > high)
-            continue;
-        slab_kernel_times(low, high, swing, error, enter, leave);
-        assert_true(ends_hold(enter, true, first, SLABS_TIMES_SLACK, spare));
-        assert_true(ends_hold(leave, false, last, SLABS_TIMES_SLACK, spare));
-        without_slack += !ends_hold(enter, true, first, 0, spare);
-        without_spare += !ends_hold(enter, true, first, SLABS_TIMES_SLACK, 0);
-    }
-    printf("# %ld wrong without the slack, %ld without what the error spares\n", without_slack,
-           without_spare);
-    assert_true(without_slack > 0 && without_spare > 0);
 }
 
 /* ---- Boxes ---- */
@@ -1190,7 +1116,6 @@ int main(void)
         cmocka_unit_test(a_wrong_bound_is_found),
         cmocka_unit_test(the_second_pass_decides_more_and_the_same_everywhere),
         cmocka_unit_test(near_a_bound_the_second_pass_decides_what_any_first_does),
-        cmocka_unit_test(ends_of_the_time_are_covered),
         cmocka_unit_test(zeros_of_either_sign_give_the_same_box),
         cmocka_unit_test(zeros_of_differences_give_the_same_box),
         cmocka_unit_test(the_second_pass_and_boxes_do_not_depend_on_the_order),

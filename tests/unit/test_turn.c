@@ -698,12 +698,7 @@ static void numbers_of_any_size(void **state)
     }
 }
 
-/* ---- Random windows against static poses ----
- *
- * With small whole numbers, the poses at multiples of 1/32 of the window are exact in doubles.
- * There, the static answers are the answers about pairs that do not turn. */
-
-enum { SAMPLES = 32 };
+/* ---- Random bodies ---- */
 
 static uint64_t seed_of_draw;
 
@@ -752,110 +747,6 @@ static void draw_placement(const struct fmb_body *body, bool turns, struct fmb_p
             out->velocity[axis] = turns ? 0 : 0.25 * draw(-2, 2);
         }
     } while (fmb_placement_check(out) != FMB_OK);
-}
-
-/* The pose at sample k of a window of 2 s, exactly. */
-static void set_sample(const struct fmb_placement *placement, int k, struct fmb_placement *out)
-{
-    double dot = 0;
-    *out = *placement;
-    out->end_count = 0;
-    memset(out->velocity, 0, sizeof out->velocity);
-    for (int i = 0; i < placement->orientation_count; i++)
-        dot += placement->orientation[i] * placement->end_orientation[i];
-    for (int i = 0; i < placement->orientation_count && placement->end_count; i++)
-        out->orientation[i] = (SAMPLES - k) * placement->orientation[i] +
-                              (dot < 0 ? -k : k) * placement->end_orientation[i];
-    for (int axis = 0; axis < 3; axis++)
-        out->position[axis] =
-            placement->end_count
-                ? ((SAMPLES - k) * placement->position[axis] + k * placement->end_position[axis]) /
-                      SAMPLES
-                : placement->position[axis] + placement->velocity[axis] * k / 16;
-}
-
-/* No static answer contradicts the answer of the window. Bodies are at most 20 from the origin. */
-static void expect_no_contradiction(const struct fmb_placement pair[2],
-                                    const struct fmb_answer *answer)
-{
-    for (int k = 0; k <= SAMPLES; k++) {
-        struct fmb_placement pose[2];
-        struct fmb_answer at;
-        for (int f = 0; f < 2; f++)
-            set_sample(&pair[f], k, &pose[f]);
-        assert_int_equal(fmb_decide(fmb_method_default(), &pose[0], &pose[1], 0,
-                                    FMB_WANT_BOX | FMB_WANT_GAP, &at),
-                         FMB_OK);
-        assert_true(at.verdict <= answer->verdict);
-        assert_true(at.gap.bounds[1] >= answer->gap.bounds[0] - 2e-11);
-        if (at.verdict == FMB_SEPARATED)
-            continue;
-        assert_true(answer->contact[0] <= k / 16. && answer->contact[1] >= k / 16.);
-        for (int axis = 0; axis < 3; axis++)
-            assert_true(answer->box[0][axis] <= at.box[0][axis] + 2e-11 &&
-                        answer->box[1][axis] >= at.box[1][axis] - 2e-11);
-    }
-}
-
-/* At 3e-12 s before the first contact and after the last one, the upper bound of the gap is above
- * -1e-13. The gap of a separated pair is the static gap at its time, up to 2e-11. */
-static void expect_tight(const struct fmb_placement pair[2], const struct fmb_answer *answer)
-{
-    struct fmb_placement pose[2];
-    struct fmb_answer at;
-    assert_true(answer->gap.bounds[0] <= answer->gap.bounds[1] &&
-                answer->gap.bounds[1] - answer->gap.bounds[0] <= 2e-11);
-    for (int end = 0; end < 2 && answer->has_contact; end++) {
-        const double time = answer->contact[end] + (end ? 3e-12 : -3e-12);
-        if (time <= 0 || time >= 2)
-            continue;
-        for (int f = 0; f < 2; f++)
-            fmb_pose_at(&pair[f], 2, time, &pose[f]);
-        assert_int_equal(fmb_decide(fmb_method_default(), &pose[0], &pose[1], 0, FMB_WANT_GAP, &at),
-                         FMB_OK);
-        assert_true(at.gap.bounds[1] > -1e-13);
-    }
-    if (answer->verdict != FMB_SEPARATED)
-        return;
-    for (int f = 0; f < 2; f++)
-        fmb_pose_at(&pair[f], 2, answer->gap.time, &pose[f]);
-    assert_int_equal(fmb_decide(fmb_method_default(), &pose[0], &pose[1], 0, FMB_WANT_GAP, &at),
-                     FMB_OK);
-    assert_true(answer->gap.has_witness);
-    assert_float_equal(at.gap.bounds[0], answer->gap.bounds[0], 2e-11);
-}
-
-static void random_windows_agree_with_static_poses(void **state)
-{
-    const unsigned want = FMB_WANT_BOX | FMB_WANT_GAP | FMB_WANT_POINT;
-    int counts[4] = {0};
-    seed_of_draw = 11;
-    for (int k = 0; k < 600; k++) {
-        struct fmb_body body[2];
-        struct fmb_placement pair[2];
-        double memory[2][400];
-        struct fmb_answer answer, swapped;
-        const int dim = draw(2, 3), both = draw(0, 1);
-        for (int f = 0; f < 2; f++) {
-            draw_body(dim, memory[f], &body[f]);
-            draw_placement(&body[f], both || f, &pair[f]);
-        }
-        const enum fmb_status status =
-            fmb_decide(fmb_method_default(), &pair[0], &pair[1], 2, want, &answer);
-        assert_int_equal(fmb_decide(fmb_method_default(), &pair[1], &pair[0], 2, want, &swapped),
-                         status);
-        assert_true(answer.verdict == swapped.verdict &&
-                    memcmp(answer.contact, swapped.contact, sizeof answer.contact) == 0 &&
-                    memcmp(answer.box, swapped.box, sizeof answer.box) == 0 &&
-                    memcmp(answer.point, swapped.point, sizeof answer.point) == 0 &&
-                    memcmp(answer.gap.bounds, swapped.gap.bounds, sizeof answer.gap.bounds) == 0);
-        counts[answer.verdict]++;
-        if (status != FMB_OK)
-            continue;
-        expect_no_contradiction(pair, &answer);
-        expect_tight(pair, &answer);
-    }
-    assert_true(counts[0] <= 12 && counts[FMB_SEPARATED] > 100 && counts[FMB_OVERLAPPING] > 100);
 }
 
 /* ---- Scenes ---- */
@@ -996,7 +887,6 @@ int main(void)
         cmocka_unit_test(bodies_with_a_common_centre),
         cmocka_unit_test(points_pass_each_other_closely),
         cmocka_unit_test(numbers_of_any_size),
-        cmocka_unit_test(random_windows_agree_with_static_poses),
         cmocka_unit_test(scenes_give_the_answers_of_single_pairs),
         cmocka_unit_test(pairs_without_a_verdict_are_named),
         cmocka_unit_test(hostile_exponents_end),
