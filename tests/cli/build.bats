@@ -128,7 +128,7 @@ included() {
 # suffices DEPS: makes each target that is listed after it. Of several targets that run one script, it makes one.
 # It makes no release, which needs a dated section in the change log (system/library.bats) and builds what 'deb' builds.
 suffices() {
-    local target machine folder header
+    local machine folder header
     [ "$(packages_of "$1")" ]
     [ "$1" = deps-bench ] || export PEERS=none # which may be installed here
     # What earlier targets leave, and 'make deps-aarch64'.
@@ -136,10 +136,10 @@ suffices() {
     touch "$tree/build/accuracy.json"
     [ "$1" != deps-aarch64 ] || mkdir -p "$tree/build/aarch64/usr/lib/aarch64-linux-gnu"
     : > "$called"
-    for target in $(listed "$1" | grep -vx -e clean -e check -e test-fast -e release); do
-        make_there "$1" "$target"
-        [ "$status" = 0 ] || { echo "make $target: $output"; false; }
-    done
+    # One after another, by one process: each would read the whole tree.
+    # shellcheck disable=SC2046
+    make_there "$1" -j1 $(listed "$1" | grep -vx -e clean -e check -e test-fast -e release)
+    [ "$status" = 0 ] || { echo "$output"; false; }
     # Each header belongs to the compiler, to the C library, or to one of the packages. Debian 13 has a part of
     # libglib2.0-dev in libgio-2.0-dev.
     command -v dpkg > /dev/null || return 0

@@ -333,7 +333,7 @@ def simplices(near):
 
 for point in points:
     p, best = numpy.array(point), None
-    near = numpy.argsort(((V - p) ** 2).sum(axis=1))[:10]
+    near = numpy.argsort(((V - p) ** 2).sum(axis=1))[:7]
     for index, weight in simplices(near):
         error = ((numpy.einsum("ij,ijk->ik", weight, V[index]) - p) ** 2).sum(axis=1)
         error[(weight < 0).any(axis=1)] = numpy.inf
@@ -862,9 +862,9 @@ f fixed left tip')"
         is '[4,1,2,3]'
     done
     # Many of them neither overflow nor underflow.
-    chain="<link name='l0'>$box</link>"
+    chain="<link name='l0'>$box</link>" turn=('-3e-3 -4e-3 0 0' '3e9 4e9 0 0')
     for ((i = 1; i < 600; i++)); do
-        chain+="<link name='l$i'>$box</link><joint name='j$i' type='fixed'><origin quat_xyzw='$([ $((i % 2)) = 1 ] && echo 3e9 4e9 0 0 || echo -3e-3 -4e-3 0 0)'/><parent link='l$((i - 1))'/><child link='l$i'/></joint>"
+        chain+="<link name='l$i'>$box</link><joint name='j$i' type='fixed'><origin quat_xyzw='${turn[i % 2]}'/><parent link='l$((i - 1))'/><child link='l$i'/></joint>"
     done
     robot "$chain"
     scene robot.urdf

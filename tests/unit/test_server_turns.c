@@ -285,8 +285,8 @@ static void more_scenes_than_jobs_are_served(void **state)
     expect_all_ok(CLIENTS);
     int stopped = 0;
     for (int i = 0; i < CLIENTS; i++) {
-        assert_in_range(service.result[i].end_pair, 1, 480 * 479 / 2);
-        stopped += service.result[i].end_pair < 480 * 479 / 2;
+        assert_in_range(service.result[i].end_pair, 1, 240 * 239 / 2);
+        stopped += service.result[i].end_pair < 240 * 239 / 2;
     }
     assert_in_range(stopped, 1, CLIENTS - 1);
 }
