@@ -149,6 +149,8 @@ $(O)/fuzz.a: $(addprefix $(O)/tests/fuzz/,fuzz.o layout.o model.o same.o same_sc
 # Comparisons of numbers deep in the engine are not what inputs should be made for.
 ifeq ($(MODE),asan)
 $(engine_objects): flags += -O2 -fno-sanitize-coverage=trace-cmp
+# Sanitizers look for faults of the product.
+$(O)/tests/oracle/%.o $(O)/tests/campaign/%.o $(O)/tests/checked/%.o: flags += -fno-sanitize=all -fno-sanitize=fuzzer-no-link
 endif
 # The parts of a fuzz target are named in its rule by the stem.
 .SECONDEXPANSION:

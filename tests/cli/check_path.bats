@@ -19,7 +19,7 @@ wrong() {
     program=$(< clients/robot/fmb-check-path)
     [ "$(grep -cF -e "$2" <<< "$program")" = 1 ] || { echo "not once: $2"; return 1; }
     printf '%s\n' "${program/"$2"/"$3"}" > "$BATS_TEST_TMPDIR/program"
-    ! FMB_SAMPLE=0.3 CHECK_PATH=$BATS_TEST_TMPDIR/program $python -S tests/python/test_check_path.py "$1" > "$BATS_TEST_TMPDIR/said" 2>&1 ||
+    ! FMB_SAMPLE=1 CHECK_PATH=$BATS_TEST_TMPDIR/program $python -S tests/python/test_check_path.py "$1" > "$BATS_TEST_TMPDIR/said" 2>&1 ||
         { echo "not found by $1: $2"; return 1; }
     grep -q '^FAILED (failures=[0-9]*)$' "$BATS_TEST_TMPDIR/said" # and not by an exception
 }

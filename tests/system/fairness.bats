@@ -23,7 +23,7 @@ share() {
     wait_until settled
     jq -e '.received == .answered + .unsent and .answered == ([.results[]] | add) and
         .results.BUSY > 0 and .results.BUSY <= 5 * (64 + .uptime_us / 10000)' "$BATS_TEST_TMPDIR/status"
-    for attack in mixed certificates bodies rate definitions ids; do
+    for attack in mixed certificates bodies ids; do
         share $attack
     done
     share pairs --ids 4 --turnaround 60

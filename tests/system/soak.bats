@@ -13,6 +13,7 @@ status_was() {
     jq -e "$2" "$FMB_BUILD/soak/$1.status"
 }
 
+# bats test_tags=release
 @test "no answer is lost or wrong, to pairs and to scenes" {
     FMB_SOAK_RATE=1000 trial rate 2
     jq -e '.queries > 1000' <<< "$report"
@@ -44,6 +45,7 @@ status_was() {
     status_was hostile '.malformed > 1000'
 }
 
+# bats test_tags=release
 @test "no answer is lost or wrong where one datagram in a hundred is lost and one overtaken" {
     [ "$FMB_NETNS" = own ] || skip "needs a network namespace"
     trial lossy
@@ -58,6 +60,7 @@ status_was() {
 }
 
 # resident_kb: at the start, then after each tenth. Sanitizers keep what was freed.
+# bats test_tags=release
 @test "an endless stream of new bodies takes no memory" {
     case $FMB_BUILD in *asan*) skip "sanitizers take memory of their own" ;; esac
     FMB_SOAK_IDS=200000 trial ids

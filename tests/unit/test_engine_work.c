@@ -104,7 +104,7 @@ static void work_is_bounded(void **state)
         for (int r = 0; r < 2; r++) {
             struct climber climber = {&draw, search->cost, ranges[r][0], ranges[r][1], posed};
             struct question worst;
-            const double work = climb(&climber, (int) draw_sample(search->climbs), 200, &worst);
+            const double work = climb(&climber, (int) draw_sample(search->climbs), 120, &worst);
             printf("# %s%s, 2^%d to 2^%d: at most %.0f products of limbs\n", search->name,
                    posed ? ", posed" : "", ranges[r][0], ranges[r][1], work);
             all += work;

@@ -1,6 +1,7 @@
 /* Order, capacity; against a flood, against a naive model, and what memory is touched. */
 #include "unit.h"
 
+#include "draw.h"
 #include "queue.h"
 
 #include <sys/resource.h>
@@ -111,9 +112,9 @@ static enum queue_put_result press(struct queue *queue, int client, size_t size)
 static void withstand(struct flood flood)
 {
     struct queue *queue = create(flood.chunks);
-    enum { ROUNDS = 3000 };
+    const int rounds = 3000 / draw_step(6);
     int refused = 0;
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < rounds; round++) {
         struct queue_datagram got;
         for (int i = 0; i < 20 * flood.flooders; i++)
             refused += press(queue, i % flood.flooders, flood.size) == QUEUE_REFUSED;
@@ -123,7 +124,7 @@ static void withstand(struct flood flood)
         assert_true(queue_pop(queue, MODEST, QUEUE_SHORT, &got, got_bytes));
         assert_true(queue_pop(queue, round % flood.flooders, QUEUE_SHORT, &got, got_bytes));
     }
-    assert_true(refused > ROUNDS);
+    assert_true(refused > rounds);
     queue_destroy(queue);
 }
 
@@ -325,6 +326,7 @@ static int draw_client(void)
 /* Turns from filling to draining and back. */
 static void compare_with_model(int capacity, int operations)
 {
+    operations /= draw_step(4);
     struct queue *queue = create((size_t) capacity);
     struct model model = {.capacity = capacity};
     int puts_of_16 = 8;

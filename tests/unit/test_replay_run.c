@@ -2,6 +2,7 @@
  * way. Ranges of time add up to the whole, and all counts agree. */
 #include "unit.h"
 
+#include "draw.h"
 #include "geometry_write.h"
 #include "log_draft.h"
 #include "replay_draw.h"
@@ -666,7 +667,7 @@ static void a_golden_of_the_same_bodies_is_the_same(void **state)
  * reserves up to twice its size. */
 static void results_after_all_queries_take_bounded_memory(void **state)
 {
-    const int64_t count = 100000;
+    const int64_t count = 100000 / draw_step(10);
     struct pair_query query = pair(0, whole(3, 2, 0), whole(2, 1, 2));
     struct pair_result result = result_of(&query);
     for (int i = 0; i < count; i++) {

@@ -310,11 +310,16 @@ static size_t write_and_read(void)
 static void results_fill_a_message_to_its_last_byte(void **state)
 {
     for (int form = 0; form < 2 * FORMS; form++) {
-        int32_t verdicts = 0;
-        do
-            set_result(2 + form / FORMS, 300, ++verdicts, form);
-        while (bound_of_result() + 5 + 16 + 48 + 96 < QUERY_BYTES_MAX &&
-               verdicts < QUERY_VERDICTS_MAX);
+        int32_t least = 1, most = QUERY_VERDICTS_MAX;
+        while (least < most) { /* until an answer more may not fit */
+            const int32_t verdicts = (least + most) / 2;
+            set_result(2 + form / FORMS, 300, verdicts, form);
+            if (bound_of_result() + 5 + 16 + 48 + 96 < QUERY_BYTES_MAX)
+                least = verdicts + 1;
+            else
+                most = verdicts;
+        }
+        set_result(2 + form / FORMS, 300, least, form);
         memset(result.detail, 'x', QUERY_TEXT_MAX - 1);
         const size_t size = write_and_read();
         assert_true(size <= QUERY_BYTES_MAX);
