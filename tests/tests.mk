@@ -79,7 +79,7 @@ $(B)/checked $(B)/tests/test_checked: $(checked_kernels)
 
 # Only the release build has these: the code that they test is compiled without sanitizers in all modes, or they count
 # work, simulate clients or test the oracle, and other tests execute the same code of the product.
-release_tests := test_checked test_kernels test_engine_work test_hull_work test_fairness test_oracle \
+release_tests := test_checked test_kernels test_engine_work test_hull_work test_fairness test_client_pace test_oracle \
 	test_oracle_rounded
 unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(release_tests)), \
 	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
