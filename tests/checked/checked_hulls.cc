@@ -84,11 +84,6 @@ struct support support_max(const struct support_vertices *vertices, const number
     return {out.index, support_value(vertices, n, out.index)};
 }
 
-support_vertices hull_frame_vertices(const struct fmb_frame *frame)
-{
-    return {frame->vertices, frame->vertex_count, frame->vertex_stride, frame->dim};
-}
-
 static void set_frame(const struct checked_vertices *from, struct checked_frame *out)
 {
     memset(out, 0, sizeof *out);
@@ -146,20 +141,17 @@ static void check_order(const struct support_view *view)
 /* The witness points, for any weights. */
 static void check_witness(const struct support_pair *pair, struct support_nearest *nearest)
 {
-    struct support_gap gap = {pair};
+    struct support_pair with_paths = *pair; /* that count as given */
+    struct support_gap gap = {&with_paths};
     struct fmb_gap out;
     number length[2];
-    gap.duration = pair->frames->duration;
     for (unsigned c = 0; c < nearest->simplex.count; c++)
         nearest->weight[c] = given(nearest->weight[c]);
     for (int f = 0; f < 2; f++) {
-        const struct fmb_placement *placement = pair->view[f].placed.placement;
-        for (int axis = 0; axis < pair->dim; axis++) {
-            gap.position[f][axis] = placement->position[axis];
-            gap.displacement[f][axis] = given(placement->velocity[axis] * gap.duration);
-        }
+        for (number &path : with_paths.path[f])
+            path = given(path);
         length[f] =
-            given(vec3_sum(gap.position[f]) + vec3_sum(gap.displacement[f]) + pair->view[f].reach);
+            given(vec3_sum(pair->position[f]) + vec3_sum(with_paths.path[f]) + pair->view[f].reach);
     }
     support_witness(&gap, nearest, &out);
     for (int f = 0; f < 2; f++)

@@ -3,7 +3,6 @@
 #include "integer.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -176,18 +175,13 @@ bool integer_simplex_step(struct integer_simplex *simplex, integer_support *supp
     return false;
 }
 
+/* integer_round() makes the largest coordinate at least 2^-5. */
 void integer_direction(mpz_t n[3], double out[3])
 {
-    long exponent[3], top = LONG_MIN;
-    for (int axis = 0; axis < 3; axis++) {
-        out[axis] = mpz_get_d_2exp(&exponent[axis], n[axis]);
-        if (out[axis] != 0 && exponent[axis] > top)
-            top = exponent[axis];
-    }
+    integer_round(n, 3, out);
     for (int axis = 0; axis < 3; axis++)
-        out[axis] = out[axis] == 0 || exponent[axis] < top - 100
-                        ? 0
-                        : ldexp(out[axis], (int) (exponent[axis] - top));
+        if (fabs(out[axis]) < 0x1p-105)
+            out[axis] = 0;
     const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
     for (int axis = 0; axis < 3; axis++)
         out[axis] /= length;

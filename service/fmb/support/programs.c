@@ -96,8 +96,6 @@ struct point {
 
 /* One placed frame. */
 struct side {
-    const struct support_view *view;
-    const struct support_side *integers;
     unsigned count; /* of vertices of the face, [0, count) of face */
     uint16_t face[FMB_HULL_VERTICES_MAX];
 };
@@ -170,13 +168,14 @@ static void each(struct programs *e, void (*call)(mpz_ptr))
 /* ---- Points ---- */
 
 /* sum := n . vertex i, in body coordinates. */
-static void set_value(struct programs *e, const struct side *side, unsigned i, mpz_t n[3])
+static void set_value(struct programs *e, int f, unsigned i, mpz_t n[3])
 {
-    const struct support_vertices *vertices = &side->view->vertices;
+    const struct support_vertices *vertices = &e->pair->view[f].vertices;
+    const struct support_side *side = &e->integers.side[f];
     mpz_set_ui(e->sum, 0);
     for (int axis = 0; axis < vertices->dim; axis++) {
-        if (side->integers->frame->shape != FMB_HULL) {
-            mpz_addmul(e->sum, n[axis], side->integers->small[i][axis]);
+        if (side->frame->shape != FMB_HULL) {
+            mpz_addmul(e->sum, n[axis], side->small[i][axis]);
             continue;
         }
         const struct dyadic x = dyadic_of(vertices->at[(size_t) axis * vertices->stride + i]);
@@ -238,16 +237,17 @@ static void swap_points(struct point *x, struct point *y)
 /* ---- Pricing ---- */
 
 /* e->body := n in body coordinates, times a positive factor. */
-static void turn_back(struct programs *e, const struct side *side, mpz_t n[3])
+static void turn_back(struct programs *e, int f, mpz_t n[3])
 {
+    const struct support_turn *turn = &e->integers.side[f].turn;
     for (int j = 0; j < 3; j++) {
-        if (!side->integers->turn.turned) {
+        if (!turn->turned) {
             mpz_set(e->body[j], n[j]);
             continue;
         }
         mpz_set_ui(e->body[j], 0);
         for (int i = 0; i < 3; i++)
-            mpz_addmul(e->body[j], side->integers->turn.row[i][j], n[i]);
+            mpz_addmul(e->body[j], turn->row[i][j], n[i]);
     }
 }
 
@@ -260,21 +260,21 @@ static unsigned price_side(struct programs *e, int f, bool reduce)
     double n[FMB_DIM_MAX];
     unsigned kept = 0, best = side->face[0];
     bool known = false; /* e->best is the value of best */
-    turn_back(e, side, e->normal[f]);
+    turn_back(e, f, e->normal[f]);
     if (integer_is_zero(e->body))
         return best;
     integer_round(e->body, 3, n);
-    const unsigned count = support_view_list(side->view, n, side->face, side->count, listed);
+    const unsigned count = support_view_list(&e->pair->view[f], n, side->face, side->count, listed);
     for (unsigned k = 0; k < count; k++) {
         const unsigned i = listed[k];
         int order = 1;
         if (kept > 0) {
             if (!known) {
-                set_value(e, side, best, e->body);
+                set_value(e, f, best, e->body);
                 mpz_swap(e->sum, e->best);
                 known = true;
             }
-            set_value(e, side, i, e->body);
+            set_value(e, f, i, e->body);
             order = mpz_cmp(e->sum, e->best);
         }
         if (order > 0) {
@@ -1127,7 +1127,7 @@ void programs_nearest_point(struct programs *e, double point[1 + FMB_DIM_MAX])
 static void set_all_vertices(struct programs *e)
 {
     for (int f = 0; f < 2; f++) {
-        e->side[f].count = e->side[f].view->vertices.count;
+        e->side[f].count = e->pair->view[f].vertices.count;
         for (unsigned i = 0; i < e->side[f].count; i++)
             e->side[f].face[i] = (uint16_t) i;
     }
@@ -1157,10 +1157,6 @@ static struct programs *begin(const struct support_pair *pair, bool nearest)
     e->pair = pair;
     e->proof.integers = &e->integers;
     support_integers_set(pair->frames, pair->posed, pair->at, &e->integers);
-    for (int f = 0; f < 2; f++) {
-        e->side[f].view = &pair->view[f];
-        e->side[f].integers = &e->integers.side[f];
-    }
     set_all_vertices(e);
     return e;
 }

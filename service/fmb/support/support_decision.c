@@ -270,9 +270,8 @@ void support_decision_end(struct support_decision *decision)
 enum fmb_status support_decide(const struct frame_pair *frames, unsigned want,
                                enum support_effort effort, struct fmb_answer *answer)
 {
-    static const struct fmb_answer none;
     struct support_decision decision;
-    *answer = none;
+    memset(answer, 0, sizeof *answer);
     bool done = support_decision_begin(frames, want, effort, INFINITY, &decision, answer);
     if (!done && effort == SUPPORT_QUICK)
         return FMB_CANNOT_DECIDE;

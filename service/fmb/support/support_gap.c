@@ -23,12 +23,12 @@ static double least_of(const struct support_gap *gap, int f)
 {
     const struct support_view *view = &gap->pair->view[f];
     const bool hull = view->placed.frame->shape == FMB_HULL;
-    double least = 0.5 * vec3_largest(gap->displacement[f]);
+    double least = 0.5 * vec3_largest(gap->pair->path[f]);
     for (unsigned i = 0; i < (hull ? 2 : view->vertices.count); i++) {
         double at[FMB_DIM_MAX];
         support_place(view, hull && i == 1 ? view->placed.frame->spanning[1] : i, at);
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            at[axis] += gap->position[f][axis];
+            at[axis] += gap->pair->position[f][axis];
         least = fmax(least, vec3_largest(at));
     }
     return least + view->placed.frame->radius;
@@ -40,20 +40,20 @@ static double least_of(const struct support_gap *gap, int f)
  * large, and their roundings less than 2^-36 of it. */
 static const double limit = 0.9e-12;
 
-/* Completes what position, displacement and duration determine. least: a lower bound of the largest
- * coordinate of a vertex over the window. */
+/* Sets the bounds of a gap. least: a lower bound of the largest coordinate of a vertex over the
+ * window. */
 static void set_bounds(struct support_gap *gap, double least)
 {
     const struct support_pair *pair = gap->pair;
+    const double duration = pair->frames->duration;
     int exponent;
     gap->far = gap->late = 0;
     for (int f = 0; f < 2; f++) {
-        const double way = vec3_sum(gap->displacement[f]);
-        gap->far += vec3_sum(gap->position[f]) + way + pair->view[f].reach;
+        const double way = vec3_sum(gap->pair->path[f]);
+        gap->far += vec3_sum(gap->pair->position[f]) + way + pair->view[f].reach;
         gap->late += way;
     }
-    gap->late *=
-        gap->duration < 0x1p-900 && gap->duration > 0 ? fmin(0x1p-1073 / gap->duration, 1) : 0;
+    gap->late *= duration < 0x1p-900 && duration > 0 ? fmin(0x1p-1073 / duration, 1) : 0;
     gap->tight = limit * least;
     frexp(pair->reach * (1 + 0x1p-40), &exponent);
     gap->scale = ldexp(1, POLYTOPE_BITS - (exponent > -200 ? exponent : -200));
@@ -222,17 +222,9 @@ struct support_gap_work {
 /* Sets the gap in doubles. Returns false if doubles cannot bound it. */
 static bool set_gap(const struct support_pair *pair, struct support_gap *out)
 {
-    const struct placed_frame frames[2] = {pair->frames->a, pair->frames->b};
-    *out = (struct support_gap){.pair = pair, .duration = pair->frames->duration};
+    out->pair = pair;
     if (!(pair->reach >= 0x1p-200 && pair->reach <= 0x1p200))
         return false;
-    for (int f = 0; f < 2; f++)
-        for (int axis = 0; axis < pair->dim; axis++) {
-            const struct fmb_placement *placement = frames[f].placement;
-            const bool posed = pair->posed;
-            out->position[f][axis] = posed ? pair->position[f][axis] : placement->position[axis];
-            out->displacement[f][axis] = posed ? 0 : placement->velocity[axis] * out->duration;
-        }
     set_bounds(out, fmax(least_of(out, 0), least_of(out, 1)));
     return out->far <= 0x1p900;
 }
@@ -266,7 +258,7 @@ static double spread_of(const struct support_gap *gap, const struct support_simp
         }
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        spread = fmax(spread, ends[1][axis] - ends[0][axis] + fabs(gap->displacement[f][axis]));
+        spread = fmax(spread, ends[1][axis] - ends[0][axis] + fabs(gap->pair->path[f][axis]));
     return spread + support_witness_error(gap);
 }
 
@@ -470,9 +462,7 @@ static void begin_placed(struct support_gap_work *work)
 {
     /* scale_lengths() lowers the bound by at most 1.5 * 2^-1074. */
     const double farthest = ldexp(work->farthest + 2 * 0x1p-1074, (int) -work->placed.exponent);
-    work->gap =
-        (struct support_gap){.pair = &work->placed.pair, .duration = work->pair->frames->duration};
-    memcpy(work->gap.displacement, work->placed.displacement, sizeof work->gap.displacement);
+    work->gap.pair = &work->placed.pair;
     set_bounds(&work->gap, work->placed.least);
     if (work->placed.least == 0)
         return;

@@ -17,9 +17,6 @@
 /* A pair in doubles, and what its bounds need. */
 struct support_gap {
     const struct support_pair *pair;
-    /* Of each frame: what is added to R v at time 0, and at the end of the window. */
-    double position[2][FMB_DIM_MAX], displacement[2][FMB_DIM_MAX];
-    double duration;
     double far;   /* bounds the sum of both frames' coordinates over the window */
     double late;  /* bounds how far the frames move in the error of a time, relative to a window */
     double tight; /* the greatest width of an enclosure */
@@ -63,7 +60,6 @@ bool support_depth_end(struct support_depth *depth, struct fmb_gap *out);
 struct support_placed {
     struct support_pair pair;
     long exponent;
-    double displacement[2][FMB_DIM_MAX];
     double least; /* the largest coordinate, or half a displacement if that is larger */
     double *memory[2];
     bool measures; /* the first pass */

@@ -54,9 +54,8 @@ struct high_point {
 /* One linear program. */
 struct program {
     const struct support_pair *pair;
-    int axis;                                        /* of the box; -1: the contact */
-    double sign;                                     /* of the height */
-    double path[FMB_DIM_MAX], position[FMB_DIM_MAX]; /* of A */
+    int axis;     /* of the box; -1: the contact */
+    double sign;  /* of the height */
     double extra; /* the error of a height that |n| does not affect */
     struct high_point basis[FMB_DIM_MAX + 1];
     double normal[FMB_DIM_MAX], level; /* the plane h = normal . p + level */
@@ -69,12 +68,12 @@ struct program {
 static void set_high_point(const struct program *program, const struct support_vertex *vertex,
                            struct high_point *out)
 {
-    const struct support_view *a = &program->pair->view[0];
+    const struct support_pair *pair = program->pair;
     out->vertex = *vertex;
     out->tau = vertex->column.end;
-    support_place(a, vertex->column.vertex[0], out->a);
+    support_place(&pair->view[0], vertex->column.vertex[0], out->a);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-        out->a[axis] += program->position[axis] + out->tau * program->path[axis];
+        out->a[axis] += pair->position[0][axis] + out->tau * pair->path[0][axis];
 }
 
 static void set_height(const struct program *program, struct high_point *point)
@@ -142,8 +141,8 @@ static double find_highest(const struct program *program, struct support_vertex 
         later += program->sign;
     } else {
         of_a[program->axis] += program->sign;
-        later += program->sign * program->path[program->axis];
-        still += program->sign * program->position[program->axis];
+        later += program->sign * pair->path[0][program->axis];
+        still += program->sign * pair->position[0][program->axis];
     }
     const struct support a = support_view_farthest(&pair->view[0], of_a);
     const struct support b = support_view_farthest(&pair->view[1], of_b);
@@ -220,12 +219,7 @@ static bool maximise(struct program *program, bool prove, double *outer)
 static void begin(const struct support_pair *pair, const struct support_simplex *simplex,
                   struct program *out)
 {
-    const struct fmb_placement *a = pair->view[0].placed.placement;
     out->pair = pair;
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        out->position[axis] = axis < pair->dim ? a->position[axis] : 0;
-        out->path[axis] = axis < pair->dim ? a->velocity[axis] * pair->frames->duration : 0;
-    }
     for (int i = 0; i <= pair->dim; i++)
         set_high_point(out, &simplex->vertex[i], &out->basis[i]);
 }
@@ -266,7 +260,7 @@ bool support_box(const struct support_pair *pair, const struct support_simplex *
             program.sign = end ? 1 : -1;
             program.extra =
                 8 * unit_roundoff *
-                (fabs(program.position[program.axis]) + fabs(program.path[program.axis]));
+                (fabs(pair->position[0][program.axis]) + fabs(pair->path[0][program.axis]));
             if (!maximise(&program, true, &height))
                 return false;
             box[end][program.axis] = program.sign * height + 0.0; /* never -0 */

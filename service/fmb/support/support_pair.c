@@ -1,8 +1,6 @@
 /* Placed frames as arrays of vertices, and the support function of their swept difference. */
 #include "support_pair.h"
 
-#include "hull_frame.h"
-
 #include <math.h>
 
 static const double unit_roundoff = 0x1p-53;
@@ -137,7 +135,7 @@ bool support_order(const struct frame_pair *frames, struct frame_pair *out)
 
 void support_pair_set(const struct frame_pair *frames, struct support_pair *out)
 {
-    const struct fmb_placement *a = frames->a.placement, *b = frames->b.placement;
+    const struct fmb_placement *placed[2] = {frames->a.placement, frames->b.placement};
     out->frames = frames;
     out->dim = frames->a.frame->dim;
     out->drifts = out->posed = false;
@@ -146,8 +144,12 @@ void support_pair_set(const struct frame_pair *frames, struct support_pair *out)
     set_view(frames->b, &out->view[1]);
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         const bool used = axis < out->dim;
-        const double speed = used ? b->velocity[axis] - a->velocity[axis] : 0;
-        out->offset[axis] = used ? b->position[axis] - a->position[axis] : 0;
+        for (int f = 0; f < 2; f++) {
+            out->position[f][axis] = used ? placed[f]->position[axis] : 0;
+            out->path[f][axis] = used ? placed[f]->velocity[axis] * frames->duration : 0;
+        }
+        const double speed = used ? placed[1]->velocity[axis] - placed[0]->velocity[axis] : 0;
+        out->offset[axis] = out->position[1][axis] - out->position[0][axis];
         out->drift[axis] = speed * frames->duration;
         out->drifts = out->drifts || (speed != 0 && frames->duration > 0);
     }

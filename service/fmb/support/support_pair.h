@@ -74,7 +74,8 @@ struct support_pair {
     /* A pair that turns is posed at a fraction `at` of the window, a multiple of 2^-53. */
     bool posed;
     double at;
-    double position[2][FMB_DIM_MAX]; /* of both bodies if posed, rounded three times */
+    double position[2][FMB_DIM_MAX]; /* of both bodies; if posed, rounded three times */
+    double path[2][FMB_DIM_MAX];     /* their displacement over the window, rounded; if posed, 0 */
     bool rounded;                    /* a frame has a radius */
     double radius[2];                /* lower and upper bound of the sum of both radii */
 };

@@ -44,7 +44,7 @@ static void place_path(struct support_placed *placed)
 {
     for (int axis = 0; axis < placed->pair.dim; axis++) {
         for (int f = 0; f < 2; f++)
-            placed->displacement[f][axis] =
+            placed->pair.path[f][axis] =
                 rounded(placed, placed->integers.side[f].displacement[axis]);
         placed->pair.drift[axis] = rounded(placed, placed->integers.drift[axis]);
     }
@@ -111,7 +111,7 @@ static void set_pair(struct support_placed *placed)
         struct support_view *view = &placed->pair.view[f];
         placed->least = fmax(placed->least, complete(view, placed->memory[f]));
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
-            placed->least = fmax(placed->least, 0.5 * fabs(placed->displacement[f][axis]));
+            placed->least = fmax(placed->least, 0.5 * fabs(placed->pair.path[f][axis]));
         reach += view->reach;
         error += view->slack;
     }

@@ -39,11 +39,11 @@ void support_witness(const struct support_gap *gap, const struct support_nearest
         late = late < 0 ? 0 : late > 1 ? 1 : late;
         for (int axis = 0; axis < FMB_DIM_MAX; axis++)
             out->witness[f][axis] =
-                gap->position[f][axis] + (late * gap->displacement[f][axis] + at[axis]);
+                gap->pair->position[f][axis] + (late * gap->pair->path[f][axis] + at[axis]);
     }
     for (int axis = 0; axis < FMB_DIM_MAX; axis++)
         apart[axis] = out->witness[1][axis] - out->witness[0][axis];
     out->has_witness = true;
-    out->time = late * gap->duration;
+    out->time = late * gap->pair->frames->duration;
     out->bounds[1] = (sqrt(vec3_dot(apart, apart)) + support_witness_error(gap)) * (1 + 0x1p-49);
 }

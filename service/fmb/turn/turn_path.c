@@ -39,6 +39,7 @@ void turn_path_set(const struct frame_pair *frames, struct turn_path *out)
         out->offset[1][axis] = late[axis] + path[axis];
     }
     out->farthest = fmax(vec3_sum(pair->offset), vec3_sum(late) + vec3_sum(path));
+    memset(pair->path, 0, sizeof pair->path);
     pair->drifts = false;
     pair->posed = true;
     pair->reach = (pair->view[0].reach + pair->view[1].reach) + out->farthest;
