@@ -8,7 +8,7 @@
 
 #include "draw.h"
 #include "fmb_batch.h"
-#include "hull_frame.h"
+#include "support.h"
 
 enum { MANY = FMB_HULL_VERTICES_MAX };
 

@@ -3,7 +3,7 @@
 #ifndef FMB_INEXACT_H
 #define FMB_INEXACT_H
 
-#include "relative.h"
+#include "slabs.h"
 
 /* A pair in doubles, without errors. */
 struct inexact_pair {

@@ -92,12 +92,23 @@
 
 #include "prepared.h"
 #include "slabs_evaluate.h"
+#include "vector.h"
 
 #include <math.h>
 
-static double max_magnitude(double largest, const double v[3])
+bool relative_motion_of(const struct world_frame *a, const struct world_frame *b, double duration,
+                        struct relative_motion *out)
 {
-    return fmax(largest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
+    *out = (struct relative_motion){.drifts = false};
+    bool finite = true;
+    for (int axis = 0; axis < a->dim; axis++) {
+        out->offset[axis] = b->origin[axis] - a->origin[axis];
+        const double speed = b->velocity[axis] - a->velocity[axis];
+        out->drift[axis] = speed * duration;
+        out->drifts = out->drifts || (speed != 0 && duration > 0);
+        finite = finite && isfinite(out->offset[axis]) && isfinite(out->drift[axis]);
+    }
+    return finite;
 }
 
 /* The condition of fmb_frame.in_range for components: no product of two coordinates underflows, nor
@@ -139,8 +150,8 @@ bool slabs_prepare(const struct fmb_prepared *a, const struct fmb_prepared *b, d
         !relative_motion_of(&out->a, &out->b, duration, &out->motion))
         return false;
     set_placing(out);
-    double offset = max_magnitude(0, out->motion.offset);
-    double drift = max_magnitude(0, out->motion.drift);
+    double offset = vec3_largest(out->motion.offset);
+    double drift = vec3_largest(out->motion.drift);
     out->drift_size = drift;
     out->reach = (offset + drift) + ((out->a.size[0] + out->a.size[1] + out->a.size[2]) +
                                      (out->b.size[0] + out->b.size[1] + out->b.size[2]));

@@ -40,7 +40,7 @@
 #include "clip.h"
 #include "fmb_batch.h"
 #include "inlined.h"
-#include "relative.h"
+#include "prepared.h"
 
 /* Bounds on the error of a gap, and of all numbers that it is made of, relative to the scale of the
  * slab: in 3D and in 2D; and of a gap along an axis, relative to the sum of all lengths. Derived in
@@ -60,6 +60,21 @@
  * first pass decides. So the pairs that stay open do not depend on the first pass, whose operations
  * may be fused. */
 #define SLABS_ROUGH 4
+
+/* Frame b relative to a. Axes beyond the dimension hold 0.
+ *
+ * Accuracy: each coordinate of offset is rounded once, each of drift twice. If the product
+ * underflows, drift may be off by another 2^-1075. Equal velocities give a drift of exactly 0, but
+ * a drift of 0 along an axis does not imply equal velocities along it (slabs.c, underflow). */
+struct relative_motion {
+    bool drifts;                /* the velocities differ, and the window is not empty */
+    double offset[FMB_DIM_MAX]; /* origin of b - origin of a, at t = 0 */
+    double drift[FMB_DIM_MAX];  /* (velocity of b - velocity of a) T, over the whole window */
+};
+
+/* Sets *out. duration: T, seconds. Returns false if a number overflowed. No shared state. */
+bool relative_motion_of(const struct world_frame *a, const struct world_frame *b, double duration,
+                        struct relative_motion *out);
 
 /* A pair that doubles can decide, as slabs_prepare() sets it. Lengths are not doubled. */
 struct slabs_pair {

@@ -4,7 +4,6 @@
 
 #include "integer.h"
 #include "interval.h"
-#include "inverse.h"
 #include "motion.h"
 #include "prepared.h"
 #include "rotation.h"
@@ -93,9 +92,63 @@ static bool invert_in_doubles(struct fmb_frame *frame)
     return true;
 }
 
+/* The components in integers; a frame in 2D gets the unit vector along z as third. Returns the
+ * unit. */
+static long get_components(const struct fmb_frame *frame, mpz_t out[3][3])
+{
+    const int dim = frame->dim;
+    struct dyadic_span span = dyadic_span_begin();
+    for (int k = 0; k < dim * dim; k++) {
+        dyadic_span_add(&span, dyadic_of(frame->component[k / dim][k % dim]));
+        dyadic_span_add(&span, dyadic_of(frame->remainder[k / dim][k % dim]));
+    }
+    for (int i = 0; i < dim; i++)
+        for (int axis = 0; axis < dim; axis++)
+            integer_set_sum(out[i][axis], frame->component[i][axis], frame->remainder[i][axis],
+                            span.unit);
+    if (dim == 2)
+        mpz_set_ui(out[2][2], 1);
+    return span.unit;
+}
+
+/* Sets the inverse of the exact components, component + remainder. Every entry is the largest
+ * double that is not above the exact one, infinite beyond the range of doubles. Returns false if
+ * the frame is exactly flat and has no inverse.
+ *
+ * With k_0 = c_1 x c_2 and so on around: x_i = k_i . p / (c_2 . k_2). In integers, k is of one
+ * degree less than the determinant, so that one unit is left below. */
+static bool invert_exactly(struct fmb_frame *frame)
+{
+    const int dim = frame->dim;
+    mpz_t c[3][3], k[3][3], determinant, scratch[2];
+    mpz_inits(determinant, scratch[0], scratch[1], NULL);
+    integer_each(c, sizeof c, mpz_init);
+    integer_each(k, sizeof k, mpz_init);
+
+    const long unit = get_components(frame, c);
+    for (int i = 0; i < 3; i++)
+        integer_cross(k[i], c[(i + 1) % 3], c[(i + 2) % 3], scratch[0]);
+    integer_dot(determinant, c[2], k[2], scratch[0]);
+    int sign = mpz_sgn(determinant);
+    mpz_abs(determinant, determinant);
+    for (int i = 0; sign && i < dim; i++)
+        for (int axis = 0; axis < dim; axis++) {
+            if (sign < 0)
+                mpz_neg(k[i][axis], k[i][axis]);
+            frame->inverse[axis][i] =
+                integer_ratio_round(k[i][axis], determinant, -unit, ROUND_DOWN, scratch);
+        }
+
+    mpz_clears(determinant, scratch[0], scratch[1], NULL);
+    integer_each(c, sizeof c, mpz_clear);
+    integer_each(k, sizeof k, mpz_clear);
+    return sign != 0;
+}
+
 static void invert(struct fmb_frame *frame)
 {
-    frame->flat = frame->count < frame->dim || (!invert_in_doubles(frame) && !inverse_set(frame));
+    frame->flat =
+        frame->count < frame->dim || (!invert_in_doubles(frame) && !invert_exactly(frame));
     frame->inverted = !frame->flat && all_finite(frame->inverse[0], FMB_COMPONENTS_MAX);
     if (!frame->inverted)
         memset(frame->inverse, 0, sizeof frame->inverse);
@@ -238,12 +291,6 @@ static double turn_error_of(const struct fmb_frame *frame)
     return PREPARED_MARGIN * (of_origin + of_components) + 0x1p-1060; /* where products underflow */
 }
 
-/* The reach of a frame without a radius. */
-static void set_core_reach(struct fmb_frame *frame, double reach)
-{
-    frame->reach = frame->core_reach = reach;
-}
-
 /* Derives all other fields from shape, origin, centre, component and remainder. */
 static void complete(struct fmb_frame *frame)
 {
@@ -251,7 +298,7 @@ static void complete(struct fmb_frame *frame)
     measure(frame);
     frame->slack = frame->spread = slack_of(frame);
     frame->summary = prepared_summary_of(frame);
-    set_core_reach(frame, reach_of(frame));
+    frame->reach = frame->core_reach = reach_of(frame);
     frame->turn_error = turn_error_of(frame);
 }
 
@@ -271,7 +318,7 @@ void frame_set_bounds(const double bounds[2][FMB_DIM_MAX], struct fmb_frame *out
         out->flat = out->flat || size == 0;
     }
     measure(out);
-    set_core_reach(out, reach_of(out));
+    out->reach = out->core_reach = reach_of(out);
     out->slack = out->spread = out->reach < 0x1p1000 ? 0 : INFINITY;
     out->summary = prepared_summary_of(out);
     out->turn_error = turn_error_of(out);

@@ -1,6 +1,12 @@
-/* Frames of shape FMB_HULL: vertices merged and stored, and what is computed from them once. */
-#include "hull_frame.h"
-
+/* Frames of shape FMB_HULL: vertices merged and stored, and what is computed from them once.
+ *
+ * Internal fields of a hull in struct fmb_frame. frame_set_bounds() sets the others, which describe
+ * the cuboid that contains the hull.
+ *
+ *   spanning    dim + 1 vertices, chosen one after the other: each spans the largest volume with
+ *               those before it, as computed in doubles. Vertex 0 again: none adds to the volume
+ *   bits        all coordinates of vertices, and all components, are multiples of 2^bits[0]; the
+ *               coordinates are below 2^bits[1] */
 #include "integer.h"
 #include "prepared.h"
 #include "support.h"
@@ -8,12 +14,6 @@
 
 #include <math.h>
 #include <string.h>
-
-struct support_vertices hull_frame_vertices(const struct fmb_frame *frame)
-{
-    return (struct support_vertices){frame->vertices, frame->vertex_count, frame->vertex_stride,
-                                     frame->dim};
-}
 
 static size_t stride_of(size_t vertex_count)
 {

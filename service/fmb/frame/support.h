@@ -23,6 +23,13 @@ struct support_vertices {
     int dim;
 };
 
+/* The vertices of a hull. */
+static inline struct support_vertices hull_frame_vertices(const struct fmb_frame *frame)
+{
+    return (struct support_vertices){frame->vertices, frame->vertex_count, frame->vertex_stride,
+                                     frame->dim};
+}
+
 struct support {
     unsigned index;
     double value; /* n . v of the vertex, rounded; its zeros may have any sign */
