@@ -76,9 +76,10 @@ enum faces_planes faces_planes_of(const struct frame_pair *pair, const struct sl
     limbs_question_set(pair, span, LIMBS_SLABS, &question);
     if (!limbs_suffice(&question))
         return FACES_UNDECIDED;
-    const struct limbs_planes planes = limbs_planes(&question);
-    if (!planes.parallel)
+    const enum limbs_planes planes = limbs_planes(&question);
+    if (planes == LIMBS_CROSSING)
         return FACES_CROSSING;
-    return planes.shared && !slabs->inexact && set_projections(slabs, projection) ? FACES_SHARED
-                                                                                  : FACES_UNDECIDED;
+    return planes == LIMBS_SHARED && !slabs->inexact && set_projections(slabs, projection)
+               ? FACES_SHARED
+               : FACES_UNDECIDED;
 }

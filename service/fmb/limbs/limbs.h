@@ -53,11 +53,8 @@ bool limbs_never_round(const struct slabs_pair *pair, struct dyadic_span span);
 void limbs_question_set(const struct frame_pair *pair, struct dyadic_span span, enum limbs_use use,
                         struct limbs_question *out);
 
-/* The planes of two faces. */
-struct limbs_planes {
-    bool parallel; /* their planes are */
-    bool shared;   /* they are the same plane at all times of the window */
-};
+/* The planes of two faces. SHARED: they are the same plane at all times of the window. */
+enum limbs_planes { LIMBS_CROSSING, LIMBS_PARALLEL, LIMBS_SHARED };
 
 /* Whether this question can be answered. */
 static inline bool limbs_suffice(const struct limbs_question *question)
@@ -82,7 +79,7 @@ int limbs_slabs(const struct limbs_question *question, const struct slab_normal 
                 const bool open[][2], int count, double contact[2]);
 
 /* The planes of two faces with areas. */
-struct limbs_planes limbs_planes(const struct limbs_question *question);
+enum limbs_planes limbs_planes(const struct limbs_question *question);
 
 /* Computes the box of two prepared frames in contact, within the limit of fmb.h. Returns false if
  * the coordinates of points, which are rounded to doubles, are not that close. In: a question about

@@ -372,16 +372,6 @@ LIMBS_FUNCTION void add_all_crossings(struct box_search *search)
         }
 }
 
-LIMBS_FUNCTION void begin_search(const struct limbs_question *question, struct limbs_pair *pair,
-                                 struct box_work *work, struct box_search *out)
-{
-    limbs_prepare(question, pair);
-    out->pair = pair;
-    out->work = work;
-    for (int f = 0; f < 2; f++)
-        set_wire(pair->traits, f, &out->wire[f]);
-}
-
 /* ---- Boxes in doubles ---- */
 
 /* Sets the reach. */
@@ -402,35 +392,6 @@ LIMBS_FUNCTION void find_reach(struct box_search *search, const struct box_pair 
     }
     if (traits.dim == 3 && traits.drifts)
         add_all_crossings(search);
-}
-
-LIMBS_FUNCTION bool box_of_pair(const struct limbs_question *question,
-                                const struct fmb_prepared *const of[2], struct limbs_pair *limbs,
-                                struct box_work *work, double box[2][FMB_DIM_MAX])
-{
-    const double duration = question->pair->duration;
-    const struct fmb_prepared *frames[1][2] = {{of[0], of[1]}};
-    struct box_search search;
-    struct frame_lanes frame[2];
-    struct pair_lanes pair;
-    struct box_places places;
-    struct box_pair of_pair;
-    struct box_ends ends;
-    begin_search(question, limbs, work, &search);
-    gather_pairs(limbs->traits, frames, frame);
-    set_places(limbs->traits, frame, duration, &pair, &places);
-    set_exact(limbs->traits, &pair, &places);
-    begin_box(&pair, limbs->traits, &places, &of_pair);
-    if (!pair.in_range)
-        return false;
-    find_reach(&search, &of_pair);
-    memcpy(ends.outer, search.reach, sizeof ends.outer);
-    memcpy(ends.inner, search.reach, sizeof ends.inner);
-    if (!are_near(limbs->traits, &of_pair, &ends))
-        return false;
-    memset(box, 0, 2 * FMB_DIM_MAX * sizeof **box);
-    put_box(&pair, limbs->traits, &places, &of_pair, &ends, box);
-    return true;
 }
 
 #endif

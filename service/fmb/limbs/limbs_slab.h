@@ -301,23 +301,6 @@ LIMBS_FUNCTION int limbs_sign_of_gap(int n, struct limbs_slab *slab)
     return above > below ? above : below;
 }
 
-/* Along the normal of a, the extent of a is 0. So the slab of this normal has an extent of 0 if and
- * only if b has none along it, that is, if the planes are parallel. */
-LIMBS_FUNCTION struct limbs_planes limbs_planes_of(struct limbs_pair *pair)
-{
-    struct limbs_products of;
-    struct limbs_slab slab;
-    const int n = pair->limbs;
-    limbs_products_of(pair, (struct slab_normal){0, 1}, &of);
-    limbs_set_slab(pair, &of, &slab);
-    subtract(n, slab.high, slab.low);
-    subtract(n, slab.start, slab.low);
-    const bool parallel = is_zero(n, slab.high);
-    return (struct limbs_planes){
-        .parallel = parallel,
-        .shared = parallel && is_zero(n, slab.start) && is_zero(n, slab.slope)};
-}
-
 /* ---- To GMP ---- */
 
 /* out := |x|, as a number without a sign. In: out is not x. */
