@@ -18,7 +18,7 @@ see_tests/path := clients clients/robot $(see_clients/robot)
 see_tests/system := tests/hostile $(GEN)
 see_tests/mesh := clients/mesh clients/common service/fmb
 see_tests/logs := tests/encode tests/campaign tests/oracle service/answer $(wire) \
-	$(call fmb,frame filter) $(GEN)
+	$(call fmb,number frame filter) $(GEN)
 see_tests/soak := tests/encode tests/hostile tests/campaign $(see_tests/campaign) clients/lib $(wire)
 see_tests/replay := clients/replay $(see_clients/replay) tests/encode
 see_tests/fuzz := tests/encode clients clients/common $(see_clients) tests/replay tests/hostile $(GEN)

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "instruction_sets.h"
 #include "machine.h"
 #include "bench_options.h"
 

@@ -1,5 +1,7 @@
 #include "bench_options.h"
 
+#include "instruction_sets.h"
+
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>

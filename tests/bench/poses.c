@@ -10,6 +10,7 @@
 #include "certified.h"
 #include "family.h"
 #include "posed.h"
+#include "rung.h"
 #include "trial.h"
 
 /* ---- Random poses ---- */
@@ -141,7 +142,7 @@ static void unsure_run(struct bench *bench)
             family_draw_posed(&draw, &cells[i], &question);
             trial_begin(&question, &trial);
             const struct frame_pair frames = pair_frames(&trial.pair[0]);
-            contacts += certified_verdict(&frames, &path) != FMB_SEPARATED;
+            contacts += verdict_by_rung(&frames, &path) != FMB_SEPARATED;
             unsure += path != CERTIFIED_FILTER;
         }
     }

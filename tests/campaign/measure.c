@@ -7,6 +7,7 @@
 
 #include "gap_check.h"
 #include "memory.h"
+#include "rung.h"
 #include "support_decision.h"
 
 /* Pairs of a batch: the methods are timed over all of them, one after the other, each decided once,
@@ -109,7 +110,7 @@ static enum certified_path path_of(const struct pair *pair)
             enum certified_path path;
             struct fmb_answer answer;
             if (!support_takes(frames.a.frame, frames.b.frame))
-                certified_verdict(&frames, &path);
+                verdict_by_rung(&frames, &path);
             else
                 path = support_decide(&frames, 0, SUPPORT_QUICK, &answer) == FMB_OK
                            ? CERTIFIED_FILTER

@@ -8,7 +8,7 @@
  *
  * Exit codes: 0 made, 1 not, 2 wrong options. */
 #include "blast.h"
-#include "instructions.h"
+#include "instruction_sets.h"
 #include "kinds.h"
 #include "query.h"
 

@@ -12,6 +12,7 @@
 #include "draw.h"
 #include "family.h"
 #include "gmp_allocations.h"
+#include "instruction_sets.h"
 #include "oracle.h"
 #include "pair_draw.h"
 #include "question.h"
@@ -918,18 +919,6 @@ static void durations_that_are_none_are_refused(void **state)
     free(world);
 }
 
-static void instructions_have_names(void **state)
-{
-    static const int unknown[] = {-1, 5, 1000, INT_MAX, INT_MIN};
-    assert_string_equal(instructions_name(INSTRUCTIONS_BEST), "best");
-    assert_string_equal(instructions_name(INSTRUCTIONS_PLAIN), "plain");
-    assert_string_equal(instructions_name(INSTRUCTIONS_TWO), "two");
-    assert_string_equal(instructions_name(INSTRUCTIONS_AVX2), "avx2");
-    assert_string_equal(instructions_name(INSTRUCTIONS_AVX512), "avx512");
-    for (size_t i = 0; i < COUNT(unknown); i++)
-        assert_null(instructions_name(unknown[i]));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -945,7 +934,6 @@ int main(void)
         cmocka_unit_test(refused_pairs_stop_no_other),
         cmocka_unit_test(durations_that_are_none_are_refused),
         cmocka_unit_test(frames_that_move_need_a_window),
-        cmocka_unit_test(instructions_have_names),
     };
     return cmocka_run_group_tests(tests, count_allocations, NULL);
 }

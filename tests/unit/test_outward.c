@@ -119,7 +119,8 @@ static void sums_of_ranges_hold_those_of_their_ends(void **state)
 
 static void expect_quotients(double x, double y, bool rounds)
 {
-    const double below = quotient_below(x, y, rounds), above = quotient_above(x, y, rounds);
+    const double below = quotient_bound(x, y, false, rounds);
+    const double above = quotient_bound(x, y, true, rounds);
     const double q = x / y;
     mpq_set_d(exact, x);
     mpq_set_d(scratch[0], y);

@@ -278,10 +278,9 @@ static struct frame_pair pair_of(const struct fmb_prepared *a, const struct fmb_
  * radius, so the programs give the tightest ends. Returns whether these parts are complete. */
 static bool begin_program(struct certified *certified, unsigned missing)
 {
-    static const struct fmb_answer none;
     const struct frame_pair pair =
         pair_of(certified->given[0], certified->given[1], certified->duration);
-    certified->proven = none;
+    memset(&certified->proven, 0, sizeof certified->proven);
     certified->stage = CERTIFIED_MISSING;
     return !certified->bounded && support_decision_begin(&pair, missing, SUPPORT_PROGRAMS, INFINITY,
                                                          &certified->program, &certified->proven);
@@ -485,21 +484,6 @@ bool fmb_decide_at_once(const struct fmb_placement *a, const struct fmb_placemen
     memset(answer, 0, sizeof *answer);
     return begin_pair(&pair, NULL, NULL, want | FMB_WANT_TIMES, INFINITY, SUPPORT_QUICK, &certified,
                       answer);
-}
-
-enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path)
-{
-    struct certified certified;
-    struct fmb_prepared a, b;
-    struct fmb_answer answer = {0};
-    prepared_set(pair->a, &a);
-    prepared_set(pair->b, &b);
-    bool done = certified_begin(&a, &b, pair->duration, 0, INFINITY, SUPPORT_CERTIFIED, &certified,
-                                &answer);
-    *path = done ? certified.path : CERTIFIED_PROGRAMS;
-    while (!done)
-        done = certified_step(&certified, &answer);
-    return answer.verdict;
 }
 
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,

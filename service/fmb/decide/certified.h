@@ -99,10 +99,6 @@ void certified_decide_prepared(const struct fmb_prepared *a, const struct fmb_pr
 enum fmb_status certified_decide(const struct frame_pair *pair, unsigned want,
                                  struct fmb_answer *answer);
 
-/* Returns the verdict of a checked pair, and in *path the rung that decided it. For tests and
- * reports. */
-enum fmb_verdict certified_verdict(const struct frame_pair *pair, enum certified_path *path);
-
 /* Returns the verdict of a prepared pair that the filter leaves unsure, or 0 if it needs the
  * programs. In: passes: how many passes of the filter were tried, 1 or 2. Bounded. */
 enum fmb_verdict certified_unsure(const struct fmb_prepared *a, const struct fmb_prepared *b,

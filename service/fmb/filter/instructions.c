@@ -75,23 +75,6 @@ const struct kernel_set *kernel_set_best(void)
     return &sets[best()];
 }
 
-const char *instructions_name(int instructions)
-{
-    switch (instructions) {
-    case INSTRUCTIONS_BEST: return "best";
-    case INSTRUCTIONS_PLAIN: return "plain";
-    case INSTRUCTIONS_TWO: return "two";
-    case INSTRUCTIONS_AVX2: return "avx2";
-    case INSTRUCTIONS_AVX512: return "avx512";
-    }
-    return NULL;
-}
-
-bool instructions_supported(int instructions)
-{
-    return instructions == INSTRUCTIONS_BEST || has(instructions);
-}
-
 bool kernel_set_of(int instructions, struct kernel_set *out)
 {
     const int which = instructions == INSTRUCTIONS_BEST ? best() : instructions;
