@@ -299,7 +299,8 @@ static enum answer_stage check(struct answer_job *job, struct answerer *answerer
     if (!(job->is_pair ? check_pair(job) : check_scene(job)))
         return COMPLETE;
     memset(job->used, 0, (size_t) job->placement_count * sizeof *job->used);
-    query_bodies_clear(&job->bodies);
+    job->bodies.used = 0;
+    job->bodies.maker.memory = NULL;
     job->answerer = answerer;
     job->next = 0;
     job->frames = 0;
@@ -465,12 +466,6 @@ static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scen
 
 /* ---- Pairs of a scene ---- */
 
-static struct fmb_scene scene_of_pair(const struct pair_query *query)
-{
-    return pair_scene(fmb_method_by_number(query->method), query->duration,
-                      (unsigned) query->want & ~(unsigned) FMB_WANT_CERTIFICATE);
-}
-
 /* Sets the fields of the result of a scene that do not depend on the pairs. */
 static void begin_answers(struct answer_job *job)
 {
@@ -494,7 +489,10 @@ static enum answer_stage begin_deciding(struct answer_job *job)
 {
     if (job->is_pair && decide_at_once(job))
         return begin_certificate(job, FMB_OK);
-    job->scene = job->is_pair ? scene_of_pair(&job->pair) : scene_of(job);
+    const struct pair_query *pair = &job->pair;
+    job->scene = job->is_pair ? pair_scene(fmb_method_by_number(pair->method), pair->duration,
+                                           (unsigned) pair->want & ~(unsigned) FMB_WANT_CERTIFICATE)
+                              : scene_of(job);
     job->scene.placements = job->placed;
     if (!job->is_pair)
         begin_answers(job);

@@ -85,9 +85,3 @@ void body_copy(const struct body_view *view, const struct fmb_body *body, void *
                 (const double *) ((const char *) memory +
                                   ((const char *) frames[i].vertices - (const char *) body));
 }
-
-void query_bodies_clear(struct query_bodies *bodies)
-{
-    bodies->used = 0;
-    bodies->maker.memory = NULL;
-}

@@ -57,7 +57,4 @@ struct query_bodies {
                                       (sizeof(struct fmb_frame) + BODY_HULL_BYTES)];
 };
 
-/* Removes all bodies. */
-void query_bodies_clear(struct query_bodies *bodies);
-
 #endif

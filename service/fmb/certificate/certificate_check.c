@@ -450,20 +450,14 @@ static const char *flaw_of_normal(struct check_proof *proof, enum fmb_verdict ve
                : NULL;
 }
 
-static const char *flaw_of_point(struct check_proof *proof, enum fmb_verdict verdict)
-{
-    if (!proof->moving && mpq_sgn(proof->time) != 0)
-        return "the time of a static pair is not 0";
-    return check_flaw_of_weights(proof, verdict);
-}
-
 static const char *flaw_of(struct check_proof *proof, enum fmb_verdict verdict, const char *text)
 {
     const char *flaw = flaw_of_text(proof, verdict, text);
     if (!flaw && verdict != FMB_OVERLAPPING && !proof->turning)
         flaw = flaw_of_normal(proof, verdict);
     if (!flaw && verdict != FMB_SEPARATED)
-        flaw = flaw_of_point(proof, verdict);
+        flaw = !proof->moving && mpq_sgn(proof->time) != 0 ? "the time of a static pair is not 0"
+                                                           : check_flaw_of_weights(proof, verdict);
     return flaw;
 }
 

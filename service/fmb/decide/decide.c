@@ -59,8 +59,7 @@ const struct fmb_method *fmb_method_by_number(int number)
 
 void fmb_scene_answer(const struct fmb_scene_answers *answers, size_t k, struct fmb_answer *out)
 {
-    static const struct fmb_answer none;
-    *out = none;
+    memset(out, 0, sizeof *out);
     if (answers->verdicts[k] == 0)
         return;
     out->verdict = (enum fmb_verdict) answers->verdicts[k];
@@ -107,8 +106,7 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
                            const struct fmb_placement *b, double duration, unsigned want,
                            struct fmb_answer *answer)
 {
-    static const struct fmb_answer none;
-    *answer = none;
+    memset(answer, 0, sizeof *answer);
     enum fmb_status status = placements_check(a, b, duration);
     if (status != FMB_OK)
         return status;
@@ -124,6 +122,6 @@ enum fmb_status fmb_decide(const struct fmb_method *method, const struct fmb_pla
         status = decide_scene(method, a, b, duration, want, answer);
     }
     if (status != FMB_OK) /* a method may have gone some way before it knew */
-        *answer = none;
+        memset(answer, 0, sizeof *answer);
     return status;
 }

@@ -537,10 +537,9 @@ static void decide_single(struct fmb_scene_state *state)
     const struct fmb_prepared *b = &state->frames.slot[state->block.frames[0][1]];
     const struct frame_pair pair = {
         {a->frame, a->placement}, {b->frame, b->placement}, state->scene.duration};
-    static const struct fmb_answer none;
-    struct fmb_answer answer = none;
+    struct fmb_answer answer = {0};
     if (state->scene.method->decide(&pair, want_of_frames(&state->scene), &answer) != FMB_OK)
-        answer = none;
+        memset(&answer, 0, sizeof answer);
     batch_put(&state->block.batch, 0, &answer);
 }
 
@@ -776,8 +775,7 @@ static bool step_open(struct fmb_scene_state *state, size_t k)
     if (state->deciding) {
         state->deciding = !certified_step(&state->decision, &state->decided);
     } else {
-        static const struct fmb_answer none;
-        state->decided = none;
+        memset(&state->decided, 0, sizeof state->decided);
         state->deciding = !certified_begin(&state->frames.slot[slot[0]],
                                            &state->frames.slot[slot[1]], state->scene.duration,
                                            want_of_frames(&state->scene), farthest_of_frames(state),

@@ -18,27 +18,21 @@ struct clip {
     double low, high;
 };
 
-/* A lower bound of x / y, and an upper bound. In: the rounded quotient q lies in [0,2].
+/* A bound of x / y: an upper one, or a lower one. In: the rounded quotient q lies in [0,2].
  *
  * The bound is q moved by 2^-51 q, which is more than twice the error of q, even after the sum is
  * rounded. Quotients below 2^-900, where underflow may matter, become 0 in the lower bound and
  * 2^-899 in the upper one. If x and y are exact (rounds = false), the bound is tight: the
  * remainder q y - x is a double, and its sign says on which side of x / y the quotient q lies. An
  * exact quotient is returned unchanged. */
-static inline double quotient_below(double x, double y, bool rounds)
+static inline double quotient_bound(double x, double y, bool upper, bool rounds)
 {
-    const double q = x / y;
-    if (!rounds && q >= 0x1p-100)
-        return fma(q, y, -x) > 0 ? nextafter(q, 0) : q;
-    return q < 0x1p-900 ? 0 : q - q * 0x1p-51;
-}
-
-static inline double quotient_above(double x, double y, bool rounds)
-{
-    const double q = x / y;
-    if (!rounds && (q == 0 || q >= 0x1p-100))
-        return fma(q, y, -x) < 0 ? nextafter(q, 3) : q;
-    return q < 0x1p-900 ? 0x1p-899 : q + q * 0x1p-51;
+    const double q = x / y, sign = upper ? 1 : -1;
+    if (!rounds && (q >= 0x1p-100 || (upper && q == 0)))
+        return sign * fma(q, y, -x) < 0 ? nextafter(q, upper ? 3 : 0) : q;
+    if (q < 0x1p-900)
+        return upper ? 0x1p-899 : 0;
+    return q + sign * (q * 0x1p-51);
 }
 
 /* Clips by c + s g >= 0, rounding outward if outer, else inward. A cut beyond the ends of the
@@ -50,10 +44,10 @@ static inline void clip_cut(struct clip *clip, double c, double g, bool outer, b
     if (c < 0 && c + g < 0) {
         *clip = (struct clip){2, -1};
     } else if (c < 0) {
-        const double low = outer ? quotient_below(-c, g, rounds) : quotient_above(-c, g, rounds);
+        const double low = quotient_bound(-c, g, !outer, rounds);
         clip->low = low > clip->low ? low : clip->low;
     } else {
-        const double high = outer ? quotient_above(c, -g, rounds) : quotient_below(c, -g, rounds);
+        const double high = quotient_bound(c, -g, outer, rounds);
         clip->high = high < clip->high ? high : clip->high;
     }
 }

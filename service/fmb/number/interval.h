@@ -45,25 +45,14 @@ static inline bool interval_same_products(double x, double y, double z, double w
     return xy == zw && fma(x, y, -xy) == fma(z, w, -zw);
 }
 
-/* x moved down, or up, by one or two doubles: for a normal number, 2^-52 |x| is between one and two
- * units in the last place. */
-static inline double interval_step_down(double x)
-{
-    return x - fabs(x) * 0x1p-52;
-}
-
-static inline double interval_step_up(double x)
-{
-    return x + fabs(x) * 0x1p-52;
-}
-
+/* 2^-52 |x| is between one and two units in the last place of a normal number. */
 static inline struct interval interval_sum(struct interval x, struct interval y)
 {
     struct interval sum = {x.low + y.low, x.high + y.high};
     if (interval_sum_error(x.low, y.low, sum.low) < 0)
-        sum.low = interval_step_down(sum.low);
+        sum.low -= fabs(sum.low) * 0x1p-52;
     if (interval_sum_error(x.high, y.high, sum.high) > 0)
-        sum.high = interval_step_up(sum.high);
+        sum.high += fabs(sum.high) * 0x1p-52;
     return sum;
 }
 
