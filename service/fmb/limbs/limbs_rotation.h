@@ -17,21 +17,6 @@ struct limbs_rotation {
     struct limbs_factor norm;                /* m */
 };
 
-/* A quaternion in integers of as many limbs as they need. */
-struct quaternion_limbs {
-    int limbs;
-    limbs_number at[4];
-};
-
-LIMBS_FUNCTION void set_quaternion_limbs(int n, const struct limbs_quaternion *q,
-                                         struct quaternion_limbs *out)
-{
-    static const struct dyadic one = {1, 0};
-    out->limbs = q->bits / 64 + 1;
-    for (int i = 0; i < 4; i++)
-        limbs_set_product(n, out->at[i], q->at[i], one, q->unit);
-}
-
 /* Sets the rows of the transposed matrix. */
 LIMBS_FUNCTION void set_inverse(int n, struct limbs_vector row[FMB_DIM_MAX],
                                 struct limbs_vector out[FMB_DIM_MAX])
@@ -48,17 +33,18 @@ LIMBS_FUNCTION void set_inverse(int n, struct limbs_vector row[FMB_DIM_MAX],
 LIMBS_FUNCTION void limbs_set_rotation(int n, const struct limbs_quaternion *quaternion,
                                        struct limbs_rotation *out)
 {
+    static const struct dyadic one = {1, 0};
     const size_t size = (size_t) n * sizeof(uint64_t);
-    struct quaternion_limbs components;
-    const struct quaternion_limbs *q = &components;
-    limbs_number product;
-    set_quaternion_limbs(n, quaternion, &components);
+    const int limbs = quaternion->bits / 64 + 1; /* that hold a component */
+    limbs_number q[4], product;
+    for (int i = 0; i < 4; i++)
+        limbs_set_product(n, q[i], quaternion->at[i], one, quaternion->unit);
     memset(out->norm.at, 0, size);
     for (int i = 0; i < 3; i++)
         memset(out->row[0][i].at[i], 0, size);
     for (int k = 0; k < 4; k++) { /* ww, and v_k v_k: + in row k, else - */
         memset(product, 0, size);
-        limbs_add_product(n, product, false, q->at[k], q->limbs, q->at[k]);
+        limbs_add_product(n, product, false, q[k], limbs, q[k]);
         add(n, out->norm.at, product);
         for (int i = 0; i < 3; i++) {
             uint64_t *entry = out->row[0][i].at[i];
@@ -69,11 +55,11 @@ LIMBS_FUNCTION void limbs_set_rotation(int n, const struct limbs_quaternion *qua
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         uint64_t *less = out->row[0][i].at[j], *more = out->row[0][j].at[i];
         memset(less, 0, size);
-        limbs_add_product(n, less, false, q->at[1 + i], q->limbs, q->at[1 + j]);
+        limbs_add_product(n, less, false, q[1 + i], limbs, q[1 + j]);
         add(n, less, less);
         memcpy(more, less, size);
         memset(product, 0, size);
-        limbs_add_product(n, product, false, q->at[0], q->limbs, q->at[1 + k]);
+        limbs_add_product(n, product, false, q[0], limbs, q[1 + k]);
         add(n, product, product);
         subtract(n, less, product);
         add(n, more, product);

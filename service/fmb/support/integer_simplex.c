@@ -139,22 +139,19 @@ static bool reduce(struct integer_simplex *simplex)
     return true;
 }
 
-void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
-                           integer_support *support, void *context)
-{
-    for (int i = 0; i <= INTEGER_CORNERS; i++)
-        simplex->corner[i] = &simplex->pool[i];
-    support(context, toward, simplex->corner[0]);
-    simplex->count = 1;
-    simplex->subset = 0;
-}
-
 void integer_simplex_begin_near(struct integer_simplex *simplex, int count)
 {
     for (int i = 0; i <= INTEGER_CORNERS; i++)
         simplex->corner[i] = &simplex->pool[i];
     simplex->count = count;
     simplex->subset = (1U << (count - 1)) - 1; /* all of them */
+}
+
+void integer_simplex_begin(struct integer_simplex *simplex, mpz_t toward[3],
+                           integer_support *support, void *context)
+{
+    support(context, toward, &simplex->pool[0]);
+    integer_simplex_begin_near(simplex, 1);
 }
 
 bool integer_simplex_step(struct integer_simplex *simplex, integer_support *support, void *context)
