@@ -179,7 +179,7 @@ static void family_is_right(void **state)
     const struct family *family = *state;
     struct cell cells[CELL_OF_ALL_SHAPES];
     const int cell_count = family_cells(family, cells);
-    const long draws = draw_sample(4);
+    const long draws = draw_sample(2);
     const bool small = family->verdict == FMB_TOUCHING && family->amount < 31;
     long bad = 0, count[4] = {0};
     for (int c = 0; c < cell_count; c += draw_step(3)) {

@@ -183,17 +183,17 @@ static void assert_sample(const char *what, int dim, bool moving, long size)
 
 static void plane_moving(void **state)
 {
-    assert_sample("plane, moving, a sample of pairs", 2, true, draw_sample(20000));
+    assert_sample("plane, moving, a sample of pairs", 2, true, draw_sample(8000));
 }
 
 static void space_static(void **state)
 {
-    assert_sample("space, static, a sample of pairs", 3, false, draw_sample(32000));
+    assert_sample("space, static, a sample of pairs", 3, false, draw_sample(14000));
 }
 
 static void space_moving(void **state)
 {
-    assert_sample("space, moving, a sample of pairs", 3, true, draw_sample(32000));
+    assert_sample("space, moving, a sample of pairs", 3, true, draw_sample(14000));
 }
 
 int main(void)
