@@ -1041,8 +1041,9 @@ static void clients_of_several_threads_are_independent(void **state)
 {
     struct thread thread[2];
     pthread_t id[2];
-    struct fmb_placement *frame = frames_of(600, 3, 6, 1);
-    const struct fmb_scene scene = scene_of(frame, 600, FMB_PAIRS_ALL, ALL_WANTS);
+    const size_t count = relay_size(600, 250);
+    struct fmb_placement *frame = frames_of(count, 3, 6, 1);
+    const struct fmb_scene scene = scene_of(frame, count, FMB_PAIRS_ALL, ALL_WANTS);
     struct relay_truth truth;
     relay_truth_make(&scene, &truth);
     for (int i = 0; i < 2; i++) {
