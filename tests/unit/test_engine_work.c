@@ -216,8 +216,8 @@ static void work_of_turning_pairs_is_bounded(void **state)
     assert_true(pair <= most_of_pair);
 }
 
-/* A square plate turns by a right angle about its centre. A corner enters the face of a cube to a
- * depth of about 2^-30 in the middle of the window, slowly: doubles do not see the ends of the
+/* A square plate turns by a right angle about its centre. Once within the window, a corner enters
+ * the face of a cube to a depth of about 2^-30, slowly: doubles do not see the ends of the
  * contact. Integers take the work of a few directions and verdicts, not of a search by halving. */
 static void ends_of_shallow_contacts_are_found_by_their_polynomials(void **state)
 {
@@ -248,6 +248,12 @@ static void ends_of_shallow_contacts_are_found_by_their_polynomials(void **state
         most = fmax(most, exact_work - before);
         assert_int_equal(answer.verdict, FMB_OVERLAPPING);
         assert_true(answer.contact[1] - answer.contact[0] < 0x1p-13);
+        /* Turned by 2 atan(s), the corner reaches (1 + 2 s - s^2) / (2 + 2 s^2) from the centre. */
+        const long double reach = (long double) moving->position[0] - 0.5L;
+        const long double root = sqrtl(2 - 4 * reach * reach);
+        for (int late = 0; late < 2 && k == 0; late++)
+            assert_true(fabsl(answer.contact[late] -
+                              (1 + (late ? root : -root)) / (2 * reach + 1)) <= 0x1p-40L);
     }
     printf("# at most %.0f\n", most);
     assert_true(most > 0 && most <= most_allowed);

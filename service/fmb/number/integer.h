@@ -86,9 +86,10 @@ void integer_each(void *numbers, size_t bytes, void (*call)(mpz_ptr));
 /* out := x / 2^unit. In: unit <= x.exponent. */
 void integer_set(mpz_t out, struct dyadic x, long unit);
 
-/* out := the numbers v, scaled by a power of two so that the largest is in [1/32, 1/16); of a
- * vector of three coordinates, |out| < 1/9. Each number is truncated to 53 bits. Its error is at
- * most 2^-52 of itself, plus 2^-1074 if it is far smaller than the largest number. */
+/* out := the numbers v, scaled by a power of two so that the largest magnitude is in [1/32, 1/16);
+ * of a vector of three coordinates, |out| < 1/9. Each number is truncated to 53 bits. Its error is
+ * at most 2^-52 of itself, plus 2^-1074 if it is far smaller than the largest. In: count is at most
+ * INTEGER_ROUND_MAX. */
 enum { INTEGER_ROUND_MAX = 6 };
 void integer_round(mpz_t *v, int count, double *out);
 

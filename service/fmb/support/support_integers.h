@@ -42,8 +42,8 @@ void support_integers_each(struct support_integers *integers, void (*call)(mpz_p
 void support_integers_set(const struct frame_pair *frames, bool posed, double at,
                           struct support_integers *out);
 
-/* Sets the unit, the frames and their vertices in body coordinates alone. In: as above; unit
- * divides all coordinates of the frames. */
+/* Sets only the unit, the frames and their vertices in body coordinates. In: all numbers are 0; all
+ * coordinates of the frames are multiples of 2^unit. */
 void support_integers_bodies(const struct frame_pair *frames, long unit,
                              struct support_integers *out);
 

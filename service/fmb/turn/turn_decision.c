@@ -23,7 +23,7 @@ enum {
     LOOKS_MAX = 4000,
     LOOKS_EXACT = 8,       /* the cost of an exact verdict */
     LOOKS_DIRECTION = 2,   /* the cost of an exact direction */
-    VERTICES_OF_LOOK = 64, /* so many vertices cost one more in either */
+    VERTICES_OF_LOOK = 64, /* so many vertices add 1 to either cost */
     LOOKS_BOUNDED = 200,
     LOOKS_STEP = 64,
     CORNERS_STEP = 64,  /* directions by vertices that a step tests in doubles */
@@ -50,10 +50,10 @@ void turn_end(struct turn_decision *decision)
 
 /* ---- Verdicts at one time ---- */
 
-/* Returns where an interval is examined and divided: at the estimated end of a contact, if it
- * contains this, otherwise at its middle. The middle is rounded down to a multiple of 2^-52 so that
+/* Returns where an interval is examined and divided: at `split` if the interval contains it,
+ * otherwise at its middle. The middle is rounded down to a multiple of 2^-52 so that
  * 1 - s is exact (the length of an interval next to a known contact need not be a power of two). */
-static double middle_of(const struct turn_decision *decision, struct turn_interval interval)
+static double cut_of(const struct turn_decision *decision, struct turn_interval interval)
 {
     if (interval.lo < decision->split && decision->split < interval.hi)
         return decision->split;
@@ -106,7 +106,7 @@ static enum fmb_verdict look(struct turn_decision *decision, double s)
     return verdict;
 }
 
-/* Returns the verdict at an examined time, or 0. */
+/* Returns the verdict at s if s is among the last TURN_KNOWN examined times, otherwise 0. */
 static enum fmb_verdict known_at(const struct turn_decision *decision, double s)
 {
     for (unsigned k = 0; k < TURN_KNOWN; k++)
@@ -222,7 +222,7 @@ static void begin_nearest(struct turn_decision *decision, double at)
     }
     decision->corner_count = decision->nearest_count;
     decision->corners_at = at;
-    decision->crossing = NAN;
+    decision->cleared = NAN;
     if (decision->nearest_at != at)
         begin_programs(decision, at, true);
 }
@@ -236,7 +236,7 @@ static void begin_corners(struct turn_decision *decision)
     decision->outcome = TURN_OPEN;
     decision->corner = decision->corner_count = 0;
     decision->corners_at = -1;
-    decision->crossing = NAN;
+    decision->cleared = NAN;
     for (int f = 0; f < 2; f++) {
         set_features(decision, f, &of[f]);
         const struct turn_features *on = &of[f];
@@ -258,16 +258,19 @@ static void begin_corners(struct turn_decision *decision)
 
 /* ---- Intervals ---- */
 
+/* The stack suffices (turn_decision.h); if it did not, the pair would have no verdict. */
 static void push(struct turn_decision *decision, double lo, double hi)
 {
-    if (lo < hi)
+    if (decision->count == TURN_STACK)
+        decision->undecided = true;
+    else if (lo < hi)
         decision->stack[decision->count++] = (struct turn_interval){lo, hi};
 }
 
 static double approach_contact(struct turn_decision *decision, double apart);
 
-/* Half of a short interval, towards the known contact. */
-static double onward(const struct turn_decision *decision)
+/* Half of short_interval, signed towards the known contact. */
+static double margin(const struct turn_decision *decision)
 {
     return decision->phase == TURN_LAST ? -0.5 * short_interval : 0.5 * short_interval;
 }
@@ -328,7 +331,7 @@ static void pop(struct turn_decision *decision)
 /* Divides the interval in progress. The half that is next in order is pushed last. */
 static void divide(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(decision, interval);
+    const double middle = cut_of(decision, interval);
     pop(decision);
     if (decision->phase == TURN_LAST)
         push(decision, interval.lo, middle);
@@ -382,15 +385,25 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
         part->direction.m[0][axis] *= part->sign;
 }
 
-/* Stores a part of an interval, around its middle, over which a direction separates the frames. */
+/* Whether an interval is next to the known contact, on the side that the phase examines. */
+static bool is_next_to_contact(const struct turn_decision *decision, struct turn_interval interval)
+{
+    return decision->phase == TURN_FIRST  ? interval.hi == decision->in[0]
+           : decision->phase == TURN_LAST ? interval.lo == decision->in[1]
+                                          : false;
+}
+
+/* Stores a part of an interval, around its middle, over which a direction separates the frames.
+ * Next to the known contact, the interval is then divided at the end of this part. */
 static void remember_apart(struct turn_decision *decision, struct turn_interval interval,
                            double middle, const struct turn_direction *direction)
 {
+    const bool next = is_next_to_contact(decision, interval);
     turn_part(&decision->path, direction, middle, &interval.lo, &interval.hi);
     if (!(turn_distance(&decision->path, direction, interval.lo, interval.hi) > 0))
         return;
     decision->apart[decision->apart_count++ % TURN_KNOWN] = interval;
-    if (decision->phase != TURN_VERDICT)
+    if (next)
         decision->split = decision->phase == TURN_FIRST ? interval.hi : interval.lo;
 }
 
@@ -398,7 +411,7 @@ static void remember_apart(struct turn_decision *decision, struct turn_interval 
  * if they are known to be apart at its middle. Returns whether it did either. */
 static bool skip_apart(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(decision, interval);
+    const double middle = cut_of(decision, interval);
     bool divides = false;
     for (unsigned k = 0; k < decision->apart_count && k < TURN_KNOWN; k++) {
         const struct turn_interval apart = decision->apart[k];
@@ -413,31 +426,21 @@ static bool skip_apart(struct turn_decision *decision, struct turn_interval inte
     return divides;
 }
 
-/* Whether an interval is next to the known contact, on the side that the phase examines. */
-static bool is_next_to_contact(const struct turn_decision *decision, struct turn_interval interval)
-{
-    return decision->phase == TURN_FIRST  ? interval.hi == decision->in[0]
-           : decision->phase == TURN_LAST ? interval.lo == decision->in[1]
-                                          : false;
-}
-
 static bool is_tried(const struct turn_decision *decision, struct turn_interval interval)
 {
     return decision->tried.lo == interval.lo && decision->tried.hi == interval.hi;
 }
 
-/* Whether directions are tried before the verdict at the middle of an interval is determined:
- * doubles do not give it, and the direction of their search may cease to separate the frames within
- * the interval. */
-static bool tries_first(struct turn_decision *decision, struct turn_interval interval)
+/* Whether directions are to be tried before the exact verdict within an interval: the direction of
+ * the last search may cease to separate the frames there. */
+static bool may_cross(const struct turn_decision *decision, struct turn_interval interval)
 {
     const struct turn_path *path = &decision->path;
     struct turn_direction direction[3];
     bool may = false;
-    if (decision->bounded || path->pair.rounded || !path->pair.usable ||
-        !is_next_to_contact(decision, interval) ||
+    if (path->pair.rounded || !path->pair.usable || !is_next_to_contact(decision, interval) ||
         interval.hi - interval.lo <= 2 * short_interval || is_tried(decision, interval) ||
-        look(decision, middle_of(decision, interval)) != 0)
+        decision->split == cut_of(decision, interval))
         return false;
     const unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
     for (unsigned k = 0; k < count && !may; k++)
@@ -445,11 +448,11 @@ static bool tries_first(struct turn_decision *decision, struct turn_interval int
     return may;
 }
 
-/* Examines the middle of an interval. A short interval next to the known contact encloses its end.
- */
+/* Examines a time within an interval, in doubles if possible. A short interval next to the known
+ * contact encloses its end. */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(decision, interval), width = interval.hi - interval.lo;
+    const double middle = cut_of(decision, interval), width = interval.hi - interval.lo;
     struct turn_direction direction[3];
     if (width <= short_interval && is_next_to_contact(decision, interval)) {
         decision->out[0] = fmin(decision->out[0], interval.lo);
@@ -457,18 +460,25 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         pop(decision);
         return;
     }
-    if (tries_first(decision, interval)) {
+    enum fmb_verdict verdict = known_at(decision, middle);
+    if (verdict == 0)
+        verdict = look(decision, middle);
+    if (verdict == 0 && decision->bounded) {
+        decision->exhausted = true;
+        return;
+    }
+    if (verdict == 0 && may_cross(decision, interval)) {
         decision->tried = interval;
         begin_corners(decision);
         return;
     }
-    const enum fmb_verdict verdict = verdict_at(decision, middle);
-    const bool sure = decision->looked == middle && decision->sure;
-    if (verdict == 0)
+    if (verdict == 0) {
+        begin_programs(decision, middle, false);
         return;
+    }
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
         return;
-    if (verdict == FMB_SEPARATED && sure) {
+    if (verdict == FMB_SEPARATED && decision->looked == middle && decision->sure) {
         const unsigned count =
             turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         double most = -INFINITY;
@@ -480,8 +490,8 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         }
         if (most > 0)
             return;
-        const bool close = decision->path.pair.rounded && !decision->bounded &&
-                           !is_next_to_contact(decision, interval) &&
+        const bool beside = interval.hi == decision->in[0] || interval.lo == decision->in[1];
+        const bool close = decision->path.pair.rounded && !decision->bounded && !beside &&
                            most > -close_bound * decision->path.pair.reach;
         if (width > short_interval && !close) {
             if (!decision->proof)
@@ -494,6 +504,8 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         decision->exhausted = true;
     else if (decision->path.pair.rounded)
         begin_nearest(decision, middle);
+    else if (is_tried(decision, interval))
+        divide(decision, interval);
     else
         begin_corners(decision);
 }
@@ -508,42 +520,48 @@ static void take_outcome(struct turn_decision *decision, enum turn_outcome outco
         decision->outcome = outcome;
 }
 
-/* Along the direction just tried, the frames may be apart from the far end of an interval up to a
- * crossing, and not from there to the known contact. Shortly before the crossing, this is proven.
- * The crossing nearest to the contact is kept. */
+/* If the direction just tried separates the frames from the far end of an interval next to the
+ * contact up to shortly before a root of its polynomial, and exact arithmetic proves it, stores the
+ * times before and after the root. Of several roots, the one nearest to the contact is kept. */
 static void take_crossing(struct turn_decision *decision, struct turn_interval interval)
 {
+    enum { TRIALS = 4 };
     const int late = decision->phase == TURN_LAST;
     const double in = decision->in[late];
-    double value[6], lo = interval.lo, hi = interval.hi;
+    double value[6], lo = interval.lo, hi = interval.hi, step = margin(decision);
     if (!is_next_to_contact(decision, interval))
         return;
     integer_round(decision->exact.value, 6, value);
     if (!(value[late ? 5 : 0] > 0))
         return;
     turn_positive_part(value, late ? hi : lo, &lo, &hi);
-    const double crossing = late ? lo : hi, before = crossing - onward(decision);
-    if (fabs(decision->crossing - in) <= fabs(crossing - in) ||
-        !(interval.lo < before && before < interval.hi))
-        return;
-    if (turn_exact_positive(&decision->exact, interval.lo, interval.hi, before, late))
-        decision->crossing = crossing;
+    const double root = late ? lo : hi;
+    for (int k = 0; k < TRIALS; k++, step *= 16) {
+        const double before = root - step;
+        if (!(interval.lo < before && before < interval.hi) ||
+            fabs(decision->cleared - in) <= fabs(before - in))
+            return;
+        if (turn_exact_positive(&decision->exact, before, late)) {
+            decision->cleared = before;
+            decision->beyond = root + step;
+            return;
+        }
+    }
 }
 
-/* Divides an interval over which no direction separates the frames. If there is a crossing, the
- * part before it is done, and the rest is examined shortly after it. */
+/* Divides an interval over which no direction separates the frames. If a direction separates them
+ * over a part of it, this part is removed, and the remainder is examined shortly after the root. If
+ * the directions were tried first, determines the verdict before the interval is divided. */
 static void divide_open(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double crossing = decision->crossing, before = crossing - onward(decision);
-    if (crossing == crossing) {
-        const bool late = decision->phase == TURN_LAST;
+    const bool late = decision->phase == TURN_LAST;
+    if (!isnan(decision->cleared)) {
         pop(decision);
-        decision->tried =
-            (struct turn_interval){late ? interval.lo : before, late ? before : interval.hi};
-        push(decision, decision->tried.lo, decision->tried.hi);
-        decision->split = crossing + onward(decision);
+        push(decision, late ? interval.lo : decision->cleared,
+             late ? decision->cleared : interval.hi);
+        decision->split = decision->beyond;
     } else if (is_tried(decision, interval) &&
-               known_at(decision, middle_of(decision, interval)) == 0) {
+               known_at(decision, cut_of(decision, interval)) == 0) {
         decision->stage = TURN_LOOK;
     } else {
         divide(decision, interval);
@@ -553,7 +571,7 @@ static void divide_open(struct turn_decision *decision, struct turn_interval int
 static void try_corner(struct turn_decision *decision, struct turn_interval interval)
 {
     struct turn_exact *exact = &decision->exact;
-    const double middle = middle_of(decision, interval);
+    const double middle = cut_of(decision, interval);
     enum turn_outcome outcome;
     if (exact->trial) {
         if (!turn_exact_step(exact, &outcome))
@@ -593,7 +611,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
  * that is undecided. */
 static void look_at_ends(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = middle_of(decision, interval);
+    const double middle = cut_of(decision, interval);
     const bool rests = decision->outcome == TURN_REST;
     const enum fmb_verdict at_lo = verdict_at(decision, interval.lo);
     const enum fmb_verdict at_hi = at_lo ? verdict_at(decision, interval.hi) : 0;
@@ -657,14 +675,15 @@ static double root_of(struct turn_path *path, const struct turn_direction *direc
     return z;
 }
 
-/* Looks ahead of a time, towards the known contact, farther each time until doubles give a verdict.
- * Returns it; a contact becomes the known one. */
+/* Searches at times ever farther from `from`, towards the known contact, until doubles give a
+ * verdict. Returns the verdict, or 0. A contact becomes the known one. */
 static enum fmb_verdict look_ahead(struct turn_decision *decision, double from, double step)
 {
+    enum { TRIALS = 6 };
     const int late = decision->phase == TURN_LAST;
     const double in = decision->in[late];
     enum fmb_verdict verdict = 0;
-    for (; verdict == 0 && fabs(step) < fabs(in - from); step *= 16) {
+    for (int k = 0; k < TRIALS && verdict == 0 && fabs(step) < fabs(in - from); k++, step *= 16) {
         verdict = look(decision, from + step);
         if (verdict > FMB_SEPARATED)
             decision->in[late] = from + step;
@@ -672,8 +691,14 @@ static enum fmb_verdict look_ahead(struct turn_decision *decision, double from, 
     return verdict;
 }
 
-/* The same as approach_contact() where the bound in doubles proves nothing that close to the root.
- */
+static bool separates(const struct turn_decision *decision, const struct turn_direction *direction,
+                      double x, double y)
+{
+    return turn_distance(&decision->path, direction, fmin(x, y), fmax(x, y)) > 0;
+}
+
+/* Used if turn_distance() is not positive up to the root. Returns the latest time up to which it is
+ * (TURN_LAST: the earliest), or `apart`. May move in[]. */
 static double approach_root(struct turn_decision *decision, const struct turn_direction *direction,
                             double apart, double root)
 {
@@ -681,10 +706,9 @@ static double approach_root(struct turn_decision *decision, const struct turn_di
     double lo = fmin(apart, decision->in[late]), hi = fmax(apart, decision->in[late]);
     turn_part(&decision->path, direction, apart, &lo, &hi);
     const double before = late ? lo : hi, step = 2 * floor((root - before) * 0x1p50) * 0x1p-50;
-    if (before == apart ||
-        !(turn_distance(&decision->path, direction, fmin(apart, before), fmax(apart, before)) > 0))
+    if (before == apart || !separates(decision, direction, apart, before))
         return apart;
-    if (step * onward(decision) > 0)
+    if (step * margin(decision) > 0)
         look_ahead(decision, before, step);
     return before;
 }
@@ -696,6 +720,7 @@ static double approach_root(struct turn_decision *decision, const struct turn_di
 static double approach_contact(struct turn_decision *decision, double apart)
 {
     const int late = decision->phase == TURN_LAST;
+    const double ahead = margin(decision);
     enum fmb_verdict verdict = look(decision, apart);
     if (verdict > FMB_SEPARATED)
         decision->in[late] = apart;
@@ -704,23 +729,19 @@ static double approach_contact(struct turn_decision *decision, double apart)
         struct turn_direction direction[3];
         turn_directions(&decision->path, decision->nearest.direction, 0, direction);
         const double root = root_of(&decision->path, direction, apart, in);
-        const double ahead = onward(decision);
         const double before = floor((root - ahead) * 0x1p50) * 0x1p-50;
-        if (!((before - apart) * ahead > 0 && (in - before) * ahead > 2 * ahead * ahead))
+        if (!((before - apart) * ahead > 0 && fabs(in - before) > short_interval))
             break;
-        if (!(turn_distance(&decision->path, direction, fmin(apart, before), fmax(apart, before)) >
-              0))
+        if (!separates(decision, direction, apart, before))
             return approach_root(decision, direction, apart, root);
         apart = before;
         verdict = look_ahead(decision, before, 2 * ahead);
         if (verdict != FMB_SEPARATED)
             break;
         turn_directions(&decision->path, decision->nearest.direction, 0, direction);
-        const double after = decision->looked;
-        if (!(turn_distance(&decision->path, direction, fmin(apart, after), fmax(apart, after)) >
-              0))
+        if (!separates(decision, direction, apart, decision->looked))
             break;
-        apart = after;
+        apart = decision->looked;
     }
     return apart;
 }

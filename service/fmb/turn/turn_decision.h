@@ -1,12 +1,13 @@
 /* Pairs of frames in which a placement has an end: verdict, contact, box and point.
  *
  * The window is divided into intervals of s = t / T whose ends are multiples of 2^-52. They are
- * examined in order of time, each at its middle first:
+ * examined in order of time (in reverse for the last end of the contact), each at its middle, or at
+ * an estimated end of the contact inside it:
  *
  *   doubles   a search at the middle (turn_look()) proves an overlap, or gives a direction. The
  *             direction may prove that the frames are apart over the interval (turn_distance());
- *             otherwise the interval is divided. If the frames are apart over a part of it, no
- *             time within this part is examined again.
+ *             otherwise the interval is divided. If the frames are apart over a part of it, times
+ *             within the last few such parts are not examined again.
  *   integers  if the search is unsure, the bound of frames with a radius is close to 0, or an
  *             interval is shorter than 2^-41: the programs give the exact verdict at the middle.
  *             Over the interval, the exact polynomials (turn_exact.h) of several directions are
@@ -42,9 +43,13 @@
 
 struct programs;
 
-/* TURN_CORNERS: both signs of the normals of all triples of 6 vertices of each frame, and of the
+/* TURN_STACK: an interval is halved at most 52 times, and the half that comes first is the next
+ * one. Only an interval next to the known contact, which is the last one on the stack, is divided
+ * elsewhere, and once one of those before it.
+ *
+ * TURN_CORNERS: both signs of the normals of all triples of 6 vertices of each frame, and of the
  * products of all pairs: 2 (20 + 20 + 15 * 15). */
-enum { TURN_DEPTH = 50, TURN_STACK = TURN_DEPTH + 4, TURN_KNOWN = 8, TURN_CORNERS = 530 };
+enum { TURN_STACK = 54, TURN_KNOWN = 8, TURN_CORNERS = 530 };
 
 struct turn_interval {
     double lo, hi;
@@ -91,9 +96,10 @@ struct turn_decision {
     unsigned apart_count;                   /* all ever added; the last TURN_KNOWN are kept */
     struct turn_exact exact;
     bool has_exact;
-    struct turn_interval tried; /* directions were tried over it before its middle was examined */
+    struct turn_interval tried; /* directions were tried over it before the exact verdict */
     double split;               /* a time at which to divide the interval that contains it, or -1 */
-    double crossing;            /* estimated end of the contact along a direction tried, or NAN */
+    double cleared;             /* a direction tried separates the frames up to this time, or NAN */
+    double beyond;              /* the time at which to divide the remainder */
     double nearest_at;          /* the time of the nearest point in `exact`, or -1 */
     unsigned nearest_count;     /* directions towards this point */
     double corners_at;          /* the time of the listed directions; -1: by vertices */

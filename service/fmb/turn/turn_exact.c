@@ -307,6 +307,8 @@ void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners
     struct work *work = &trial->work;
     integer_each(work, sizeof *work, mpz_init);
     exact->trial = trial;
+    exact->lo = lo;
+    exact->hi = hi;
     trial->of = corners->of;
     trial->splits = false;
     trial->scan = trial->scans = trial->next = 0;
@@ -483,15 +485,15 @@ bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome)
 
 /* The polynomial of the least coefficients is at most that of any two vertices. De Casteljau's
  * subdivision at `at`, without divisions, gives its coefficients over the part. */
-bool turn_exact_positive(const struct turn_exact *exact, double lo, double hi, double at, int late)
+bool turn_exact_positive(const struct turn_exact *exact, double at, int late)
 {
     static const unsigned long factor[6] = {10, 2, 1, 1, 2, 10}; /* 10 / C(5, k) */
     mpz_t b[6], weight[2];
     bool positive = true;
     integer_each(b, sizeof b, mpz_init);
     integer_each(weight, sizeof weight, mpz_init);
-    integer_set_sum(weight[0], hi, -at, -52);
-    integer_set_sum(weight[1], at, -lo, -52);
+    integer_set_sum(weight[0], exact->hi, -at, -52);
+    integer_set_sum(weight[1], at, -exact->lo, -52);
     for (int k = 0; k < 6; k++)
         mpz_mul_ui(b[k], exact->value[late ? 5 - k : k], factor[k]);
     for (int degree = 5; degree >= 0 && positive; degree--) {

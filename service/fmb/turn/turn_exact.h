@@ -25,9 +25,10 @@ struct turn_exact {
     const struct turn_path *path;
     struct turn_trial *trial; /* the direction in progress, or NULL */
     struct support_integers integers;
-    long unit; /* of lengths */
+    long unit;     /* of lengths */
+    double lo, hi; /* the interval of the last direction */
     mpz_t q[2][2][4], offset[3], drift[3], radius, nearest[2][3];
-    mpz_t value[6]; /* the least coefficients of the last direction, times a positive factor */
+    mpz_t value[6]; /* its least coefficients, times a positive factor; all 0 if it is 0 */
 };
 
 /* Sets the integers of a pair, which allocates through GMP until turn_exact_end(). */
@@ -53,9 +54,9 @@ void turn_exact_try(struct turn_exact *exact, const struct turn_corners *corners
 /* Performs a step of less than a millisecond. Returns whether the outcome is complete. */
 bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome);
 
-/* Returns whether the least coefficients of the last direction, over [lo, hi], prove that the
- * frames are apart on [lo, at], or on [at, hi] if late is 1. In: lo < at < hi, multiples of 2^-52.
- */
-bool turn_exact_positive(const struct turn_exact *exact, double lo, double hi, double at, int late);
+/* Returns whether the least coefficients of the last direction, over its interval [lo, hi], prove
+ * that the frames are apart on [lo, at], or on [at, hi] if late is 1. In: lo < at < hi, a multiple
+ * of 2^-52. */
+bool turn_exact_positive(const struct turn_exact *exact, double at, int late);
 
 #endif

@@ -490,6 +490,6 @@ void turn_part(const struct turn_path *path, const struct turn_direction *direct
     struct turn_polynomial of;
     set_polynomial(path, direction, 1, *lo, *hi, &of);
     for (int k = 0; k < 6; k++)
-        of.value[k] -= 4 * binomial[k] * of.error;
+        of.value[k] -= 4 * binomial[k] * of.error + path->pair.radius[1] * of.length[k];
     turn_positive_part(of.value, at, lo, hi);
 }

@@ -118,11 +118,11 @@ void turn_normal(const struct turn_path *path, const struct turn_direction *dire
 double turn_distance(const struct turn_path *path, const struct turn_direction *direction,
                      double lo, double hi);
 
-/* Shrinks [*lo, *hi], which contains `at`, to a part around `at` over which the polynomial that has
- * these coefficients over the whole interval is probably positive. In: it is positive at `at`. */
+/* Shrinks [*lo, *hi], which contains `at`, to the part around `at` over which a polynomial is
+ * probably positive, by samples. This proves nothing. c: its coefficients over [*lo, *hi]. */
 void turn_positive_part(const double c[6], double at, double *lo, double *hi);
 
-/* The same for the bound of turn_distance(). This proves nothing. */
+/* The same for the polynomial of turn_distance(), less the radii and four times its error. */
 void turn_part(const struct turn_path *path, const struct turn_direction *direction, double at,
                double *lo, double *hi);
 
