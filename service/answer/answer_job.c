@@ -246,19 +246,14 @@ static bool check_groups(struct check_context *context, const struct answer_job 
            check_refuse_at(context, FMB_BAD_PAIR, "indices", 2 * (int) k, "a pair of one group");
 }
 
-static bool check_margin(struct check_context *context, const struct scene_query *query)
-{
-    return (query->margin >= 0 && isfinite(query->margin)) ||
-           check_refuse(context, FMB_BAD_MARGIN, "margin", "negative or not finite");
-}
-
 static bool check_scene(struct answer_job *job)
 {
     const struct scene_query *query = &job->query;
     struct check_context *context = at(job, -1);
     const int32_t want = query->want | (query->margin > 0 ? FMB_WANT_GAP : 0);
     return check_ids(context, query->client_id, query->sequence_number) &&
-           check_margin(context, query) &&
+           ((query->margin >= 0 && isfinite(query->margin)) ||
+            check_refuse(context, FMB_BAD_MARGIN, "margin", "negative or not finite")) &&
            check_request(context, query->duration, query->method, want,
                          FMB_WANT_BOX | FMB_WANT_TIMES | FMB_WANT_GAP | FMB_WANT_POINT) &&
            check_counts(context, query) && check_which(context, job) &&
@@ -457,13 +452,6 @@ static bool decide_at_once(struct answer_job *job)
                               &job->pair_result.answer);
 }
 
-/* Takes the answer of a pair that was decided in steps. */
-static enum answer_stage take_pair(struct answer_job *job, const struct fmb_scene_answers *answers)
-{
-    fmb_scene_answer(answers, 0, &job->pair_result.answer);
-    return begin_certificate(job, answers->verdicts[0] ? FMB_OK : FMB_CANNOT_DECIDE);
-}
-
 /* ---- Pairs of a scene ---- */
 
 /* Sets the fields of the result of a scene that do not depend on the pairs. */
@@ -643,8 +631,12 @@ static enum answer_stage decide(struct answer_job *job)
 {
     struct fmb_scene_answers answers;
     const bool done = fmb_scene_step(job->state, &answers);
-    if (job->is_pair)
-        return answers.count > 0 ? take_pair(job, &answers) : DECIDING;
+    if (job->is_pair && answers.count == 0)
+        return DECIDING;
+    if (job->is_pair) {
+        fmb_scene_answer(&answers, 0, &job->pair_result.answer);
+        return begin_certificate(job, answers.verdicts[0] ? FMB_OK : FMB_CANNOT_DECIDE);
+    }
     const size_t count = append_all(job, &answers);
     if (count < answers.count) {
         const unsigned long long end = fmb_scene_number(job->state, count);

@@ -228,16 +228,6 @@ static struct cache_record *record_of(const struct cache *cache, int32_t e)
     return (struct cache_record *) (cache->slot + (size_t) (e - 1) * SLOT_BYTES);
 }
 
-static int32_t entry_of(const struct cache *cache, const struct cache_record *record)
-{
-    return (int32_t) (((const unsigned char *) record - cache->slot) / SLOT_BYTES) + 1;
-}
-
-static struct cache_record *record_containing(const struct cached *cached)
-{
-    return (struct cache_record *) ((char *) cached - offsetof(struct cache_record, cached));
-}
-
 static void set_begin(struct cache *cache, int32_t e, bool begins)
 {
     const uint64_t bit = (uint64_t) 1 << (e - 1) % 64;
@@ -273,10 +263,11 @@ static const struct cached *pin(struct cache *cache, int32_t e)
 
 void cache_release(struct cache *cache, const struct cached *cached)
 {
-    struct cache_record *record = record_containing(cached);
+    unsigned char *slot = (unsigned char *) cached - offsetof(struct cache_record, cached);
+    struct cache_record *record = (struct cache_record *) slot;
     assert(record->pins > 0);
     if (--record->pins == 0)
-        lru_append(cache, entry_of(cache, record));
+        lru_append(cache, (int32_t) ((slot - cache->slot) / SLOT_BYTES) + 1);
 }
 
 /* ---- Ids ---- */

@@ -57,16 +57,6 @@ static bool check_finite(struct check_context *context, const char *list, const 
 
 /* ---- Frames ---- */
 
-static double number_at(const struct geometry_reader *reader, int32_t i)
-{
-    return cursor_double_at(reader->number + 8 * (size_t) i);
-}
-
-static int32_t vertices_at(const struct geometry_reader *reader, int32_t i)
-{
-    return (int32_t) big_endian_32(reader->count + 4 * (size_t) i);
-}
-
 static bool check_shapes(struct check_context *context, const struct body_view *body)
 {
     const struct geometry_reader reader = geometry_begin(body);
@@ -76,7 +66,8 @@ static bool check_shapes(struct check_context *context, const struct body_view *
         const int code = reader.shape[i];
         const struct geometry_shape shape = geometry_shape(code);
         const bool counted = shape.by_vertices && counts < body->count_count;
-        const int32_t vertices = counted ? vertices_at(&reader, counts) : 1;
+        const int32_t vertices =
+            counted ? (int32_t) big_endian_32(reader.count + 4 * (size_t) counts) : 1;
         const int64_t count = geometry_number_count(body->dim, code, vertices);
         if (shape.shape == 0)
             return check_refuse_at(context, FMB_UNKNOWN_SHAPE, "shapes", i, NULL);
@@ -100,7 +91,7 @@ static bool check_numbers(struct check_context *context, const struct body_view 
 {
     const struct geometry_reader reader = geometry_begin(body);
     for (int32_t i = 0; i < body->number_count; i++)
-        if (!isfinite(number_at(&reader, i)))
+        if (!isfinite(cursor_double_at(reader.number + 8 * (size_t) i)))
             return check_refuse_at(context, FMB_NOT_FINITE, "numbers", i, NULL);
     return true;
 }

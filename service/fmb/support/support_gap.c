@@ -59,11 +59,6 @@ static void set_bounds(struct support_gap *gap, double least)
     gap->scale = ldexp(1, POLYTOPE_BITS - (exponent > -200 ? exponent : -200));
 }
 
-static bool is_tight(const struct support_gap *gap, const struct fmb_gap *out)
-{
-    return out->bounds[1] - out->bounds[0] <= gap->tight;
-}
-
 /* ---- Distance ---- */
 
 /* Sets the lower bound that the direction proves. */
@@ -85,7 +80,8 @@ static bool is_deepest(const struct support_gap *gap, const struct fmb_gap *out)
 static enum gap_outcome outcome_of(const struct support_gap *gap, bool deepest,
                                    const struct fmb_gap *out)
 {
-    return is_tight(gap, out) && (!deepest || is_deepest(gap, out)) ? GAP_KNOWN : GAP_UNSURE;
+    const bool tight = out->bounds[1] - out->bounds[0] <= gap->tight;
+    return tight && (!deepest || is_deepest(gap, out)) ? GAP_KNOWN : GAP_UNSURE;
 }
 
 static enum gap_outcome distance(const struct support_gap *gap,

@@ -18,11 +18,6 @@
  * point of D. Each of its at most 4 terms is off by error, and computing the sum by 10 u reach,
  * less than a third of another error. */
 
-static double lower_distance(const struct support_pair *pair, const struct support_nearest *nearest)
-{
-    return nearest->least - 5 * pair->error;
-}
-
 static double sharper_distance(const struct support_pair *pair,
                                const struct support_nearest *nearest)
 {
@@ -69,7 +64,7 @@ enum fmb_verdict support_round_verdict(const struct support_pair *pair, enum fmb
         return FMB_OVERLAPPING;
     if (nearest->outcome != GAP_KNOWN || nearest->least < pair->radius[1])
         return 0;
-    return lower_distance(pair, nearest) > pair->radius[1] ||
+    return nearest->least - 5 * pair->error > pair->radius[1] ||
                    sharper_distance(pair, nearest) > pair->radius[1]
                ? FMB_SEPARATED
                : 0;
