@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Always inlined: sums and products of a few limbs. */
+/* Sums and products of a few limbs are inlined always, under AddressSanitizer never (inlined.h). */
 #ifdef INLINED_NEVER
 #define LIMBS_INLINE static inline
 #define LIMBS_UNROLL
