@@ -65,6 +65,14 @@ const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames)
     return maker->memory;
 }
 
+const struct fmb_body *body_make(const struct body_view *view, void *memory)
+{
+    struct body_maker maker;
+    int32_t frames = INT32_MAX;
+    body_begin(&maker, view, memory);
+    return body_continue(&maker, &frames);
+}
+
 void body_copy(const struct body_view *view, const struct fmb_body *body, void *memory)
 {
     struct fmb_body *out = memcpy(memory, body, body_bytes(view));

@@ -37,6 +37,9 @@ void body_begin(struct body_maker *maker, const struct body_view *view, void *me
  * body, which is at `memory` and may be copied by body_copy() only; NULL: it is not complete. */
 const struct fmb_body *body_continue(struct body_maker *maker, int32_t *frames);
 
+/* Makes a body in one step: body_begin(), then body_continue(). */
+const struct fmb_body *body_make(const struct body_view *view, void *memory);
+
 /* Copies a body that was made of view. On input: memory of body_bytes(), aligned as a struct
  * fmb_body. */
 void body_copy(const struct body_view *view, const struct fmb_body *body, void *memory);

@@ -399,7 +399,10 @@ static void fill_record(struct cache_record *record, const struct body_view *vie
                         const struct fmb_body *body)
 {
     unsigned char *bytes = (unsigned char *) &record->cached.body + body_bytes(view);
-    body_copy(view, body, &record->cached.body);
+    if (body)
+        body_copy(view, body, &record->cached.body);
+    else
+        body_make(view, &record->cached.body);
     record->cached.view = *view;
     record->cached.view.bytes = memcpy(bytes, view->bytes, view->size);
     record->ids = record->pins = 0;
@@ -456,6 +459,12 @@ const struct cached *cache_add(struct cache *cache, int64_t id, const struct bod
     if (id)
         set_latest(cache, id, e);
     return pin(cache, e);
+}
+
+const struct cached *cache_intern(struct cache *cache, int64_t id, struct body_view *view)
+{
+    const struct cached *cached = cache_lookup(cache, id, view);
+    return cached ? cached : cache_add(cache, id, view, NULL);
 }
 
 const struct cached *cache_find(struct cache *cache, const struct handle *handle)

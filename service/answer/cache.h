@@ -44,7 +44,7 @@ struct cached {
 };
 
 /* Looks up a handle. Returns the body, pinned: it is valid until the caller releases it, once for
- * each call of cache_find(), cache_lookup() or cache_add() that returned it, and is
+ * each call of cache_find(), cache_lookup(), cache_add() or cache_intern() that returned it, and is
  * then the most recently used. Counts a hit. Returns NULL, and counts nothing, if it is not held.
  */
 const struct cached *cache_find(struct cache *cache, const struct handle *handle);
@@ -58,11 +58,15 @@ const struct cached *cache_peek(const struct cache *cache, const struct handle *
 const struct cached *cache_lookup(struct cache *cache, int64_t id, struct body_view *view);
 
 /* Adds a body that cache_lookup() did not find, which may evict others. On input: its id, its
- * encoded form with the handle, and the body, which are copied. Returns the body, pinned as by
- * cache_find(); if it has been added since, the one that is held; NULL if it cannot be added: it
- * takes more frames than the capacity, or pinned bodies leave no free memory of that length. */
+ * encoded form with the handle, and the body, which are copied; body NULL: it is made here, in one
+ * step. Returns the body, pinned as by cache_find(); if it has been added since, the one that is
+ * held; NULL if it cannot be added: it takes more frames than the capacity, or pinned bodies leave
+ * no free memory of that length. */
 const struct cached *cache_add(struct cache *cache, int64_t id, const struct body_view *view,
                                const struct fmb_body *body);
+
+/* Finds a body, or makes it in one step and adds it: cache_lookup(), then cache_add(). */
+const struct cached *cache_intern(struct cache *cache, int64_t id, struct body_view *view);
 
 /* Evicts all bodies that are not pinned. */
 void cache_clear(struct cache *cache);

@@ -3,7 +3,7 @@
 
 #include "answer_now.h"
 #include "big_endian.h"
-#include "cache_intern.h"
+#include "body.h"
 #include "geometry_write.h"
 #include "wire.h"
 #include "writer.h"

@@ -2,7 +2,6 @@
 #include "unit.h"
 
 #include "answer_now.h"
-#include "cache_intern.h"
 #include "geometry_write.h"
 #include "scene_truth.h"
 #include "wire.h"

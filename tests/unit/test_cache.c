@@ -1,7 +1,7 @@
 /* Hit, miss, eviction, ids, pages, and bodies or ids that are chosen to collide. */
 #include "unit.h"
 
-#include "cache_intern.h"
+#include "cache.h"
 #include "geometry_write.h"
 
 #include <stdbool.h>
@@ -239,7 +239,7 @@ static void the_capacity_counts_vertices(void **state)
 {
     enum { MOST = FMB_HULL_VERTICES_MAX };
     static unsigned char bytes[GEOMETRY_NONE_BYTES + 5 + 8 * 3 * MOST];
-    static double vertices[3 * MOST], read[3 * MOST];
+    static double vertices[3 * MOST], memory[4 * MOST + 64], read[3 * MOST];
     struct cache *cache = cache_create(2 * (1 + MOST / CACHE_VERTICES), secret);
     for (int i = 0; i < 3 * MOST; i++)
         vertices[i] = i * i % 1009 + i / 7.0;
@@ -247,10 +247,16 @@ static void the_capacity_counts_vertices(void **state)
     for (int i = 0; i < 9; i++) {
         static const int counts[] = {1, 7, 8, 9, 150, 16, 1, 100, 102};
         struct body_view view = geometry_write_hull(i == 5 ? 2 : 3, vertices + i, counts[i], bytes);
+        struct fmb_body body;
         bool by_vertices;
         frames += 1 + (counts[i] + 7) / 8;
         assert_null(cache_lookup(cache, 1 + i, &view));
-        const struct cached *cached = cache_intern(cache, 1 + i, &view);
+        assert_int_equal(
+            fmb_body_make_hull(view.dim, vertices + i, (size_t) view.number_count, memory, &body),
+            FMB_OK);
+        const struct cached *cached =
+            i % 2 ? cache_add(cache, 1 + i, &view, NULL) : cache_intern(cache, 1 + i, &view);
+        memset(memory, 0, sizeof memory);
         assert_non_null(cached);
         assert_int_equal(cache_counts(cache).frames, frames);
         assert_int_equal(fmb_frame_numbers(&cached->body.one, &by_vertices, read, COUNT(read)),
