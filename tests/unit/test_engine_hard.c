@@ -408,12 +408,43 @@ static void boxes_of_small_numbers_are_plain(void **state)
     assert_true(plain > ends - ends / 30 && ends > 0); /* few are known less well */
 }
 
+/* Frames touch along an axis and slide along the others. Speeds and durations have all bits, and
+ * the speeds far exponents, so that displacements in integers take more than two limbs. */
+static void frames_slide_at_any_speed(void **state)
+{
+    static const int shapes[] = {FMB_CUBOID, FMB_TETRAHEDRON};
+    struct draw draw;
+    draw_begin(&draw, "frames_slide_at_any_speed");
+    for (long n = draw_sample(200) - 1; n >= 0; n--) {
+        const int dim = 2 + (int) (n % 2), axis = draw_int(&draw, 0, dim - 1);
+        const int far = draw_int(&draw, -60, 60);
+        struct question question = {
+            .a = {.dim = dim, .shape = shapes[draw_int(&draw, 0, 1)]},
+            .b = {.dim = dim, .shape = shapes[draw_int(&draw, 0, 1)], .moving = true},
+            .duration = ldexp(draw_uniform(&draw, 1, 2), far)};
+        for (int i = 0; i < dim; i++) {
+            for (int j = 0; j < dim; j++) { /* leaning, but not out of the touching plane */
+                question.a.component[i][j] = i == j      ? 1
+                                             : j == axis ? 0
+                                                         : draw_uniform(&draw, 0, 0.5);
+                question.b.component[i][j] = i == j      ? 1
+                                             : j == axis ? 0
+                                                         : draw_uniform(&draw, 0, 0.5);
+            }
+            question.b.origin[i] = i == axis ? -1 : draw_uniform(&draw, -0.5, 0.5);
+            question.b.velocity[i] = i == axis ? 0 : ldexp(draw_log(&draw, -50, 1), -far);
+        }
+        referee_assert(&question);
+    }
+}
+
 static const struct CMUnitTest placed[] = {
     cmocka_unit_test(edges_may_be_parallel_in_doubles_only),
     cmocka_unit_test(boxes_touch_about_centres_that_round),
     cmocka_unit_test(boxes_are_apart_by_what_rounding_loses),
     cmocka_unit_test(boxes_hold_travels_that_underflow),
     cmocka_unit_test(boxes_of_small_numbers_are_plain),
+    cmocka_unit_test(frames_slide_at_any_speed),
 };
 
 int main(void)
