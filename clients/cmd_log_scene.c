@@ -95,9 +95,9 @@ static bool read_logs(struct search *search)
             take_event(search, &event);
         progress_to(input->passed, input_size(input));
     }
-    progress_end();
     if (outcome == LOG_FAILED)
         complain("%s: %s", search->args->operands[input->log], strerror(errno));
+    progress_end();
     return outcome == LOG_END;
 }
 
@@ -119,7 +119,7 @@ __attribute__((format(printf, 2, 3))) static bool refuse(const struct search *se
 }
 
 /* Decodes the query. Handles are replaced by their bodies. A placement without a name gets the last
- * one of its body. */
+ * name that the logs give its body. */
 static bool read_query(struct search *search)
 {
     struct logged_query *query = &search->query;

@@ -29,6 +29,8 @@ static const char usage[] =
     "\n" ROBOT_RUN_USAGE
     "  --margin M           the margin, in place of that of the scenes\n"
     "\n"
+    "Output:\n" ROBOT_RUN_OUTPUT_USAGE
+    "\n"
     "A row with a time lasts until the time of the next row.\n"
     "\n"
     "Without --srdf, a link is not tested against its parent, or, if that has no\n"

@@ -69,8 +69,8 @@ bool args_error(const struct args *args, const char *format, ...)
 /* For take: reads optarg as an integer from low to high. Returns false after an error. */
 bool args_integer(const struct args *args, long low, long high, long *out);
 
-/* Reads finite numbers, separated by commas. Returns how many; 0: more than `most`, or the text is
- * anything else. */
+/* Reads up to `most` finite numbers separated by commas. Returns their number; or 0 if there are
+ * more, or the text is not such a list (out may be partly written). */
 int args_numbers(const char *text, int most, double out[]);
 
 /* For take: reads optarg as a prefix of channels; out: const char **. Returns false after an error.

@@ -79,28 +79,28 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
 
 struct taken_id {
     int64_t id;
+    bool changes; /* the placement gets another */
     UT_hash_handle hh;
 };
 
 size_t scene_free_ids(struct fmb_placement *placements, size_t count, bool anonymous)
 {
-    enum { WITHOUT = -1 };
     struct taken_id *taken = allocate(count, sizeof *taken), *table = NULL, *found;
     int64_t next = 1;
     size_t changed = 0;
     for (size_t i = 0; i < count; i++) {
         const int64_t id = taken[i].id = placements[i].id;
         HASH_FIND(hh, table, &taken[i].id, sizeof id, found);
-        if (found || (id == 0 && anonymous))
-            placements[i].id = WITHOUT;
-        else if (id != 0)
+        taken[i].changes = found || (id == 0 && anonymous);
+        if (id != 0 && !found)
             HASH_ADD(hh, table, id, sizeof id, &taken[i]);
     }
     for (size_t i = 0; i < count; i++) {
-        if (placements[i].id != WITHOUT)
+        if (!taken[i].changes)
             continue;
-        for (found = table; found; next += found != NULL)
+        do
             HASH_FIND(hh, table, &next, sizeof next, found);
+        while (found && next++);
         placements[i].id = next++;
         changed++;
     }

@@ -50,8 +50,8 @@ enum fmb_status scene_make_body(struct owned_scene *scene, const struct given_fr
  * 0 if there are no cylinders. */
 void scene_report_outside(const char *file, double outside);
 
-/* Gives the lowest free ids, in order, to the placements whose id an earlier one has; anonymous:
- * also to those without an id. Returns their number. */
+/* Makes ids unique: each placement whose id an earlier placement has gets the lowest free id.
+ * anonymous: so do placements without an id. Returns the number of changed ids. */
 size_t scene_free_ids(struct fmb_placement *placements, size_t count, bool anonymous);
 
 /* Frees what the scene owns, and sets it to {0}, an empty scene. */

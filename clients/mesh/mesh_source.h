@@ -23,7 +23,7 @@ struct mesh_source {
 /* Largest number of vertices or faces; not an index. */
 #define MESH_COUNT_MAX (UINT32_MAX - 1u)
 
-/* A mesh under construction, for formats that do not state its size in advance. */
+/* A mesh under construction. Its arrays grow with the elements that are read. */
 struct mesh_build {
     struct mesh_source *source;
     struct mesh *mesh;

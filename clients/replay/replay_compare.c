@@ -176,8 +176,8 @@ static struct exchange exchange_of(struct replay *replay, const struct logged_re
         .query = &replay->compared, .result = result, .names = replay->options->names};
 }
 
-/* Compares the new result with the recorded one, if there is one, which was read, and so was its
- * own query. size: of the recorded result; same_bytes: of both results. */
+/* Compares the new result with the recorded one, if any, which the caller has read, and its own
+ * query. size: of the recorded result; same_bytes: of both results. */
 static void compare_read(struct replay *replay, const struct match_item *query,
                          const struct new_result *answered, uint32_t size, bool same_bytes)
 {

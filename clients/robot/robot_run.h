@@ -61,15 +61,15 @@ struct robot_run_options {
     "                       as in an <origin>\n"                                         \
     "  --limit-slack D      how far values may be outside the limits of their joints,\n" \
     "                       in radians or lengths, before they are refused (0.001;\n"    \
-    "                       inf: any). They are used as they are, and reported\n"        \
+    "                       inf: any). Such values are used unchanged, and reported\n"   \
     "\n"                                                                                 \
     "Bodies:\n"                                                                          \
     "  --with FILE          adds the bodies of a scene of JSON, with its ignored\n"      \
     "                       pairs, duration and margin; or the links of a URDF, as\n"    \
     "                       obstacles of one group. May be given several times. A\n"     \
     "                       body with \"link\": NAME is carried by that link, and has\n" \
-    "                       its pose in the link. Links have the ids from 1 on;\n"       \
-    "                       bodies with one of these get others\n"                       \
+    "                       its pose in the link. Links have ids from 1 on. A body\n"    \
+    "                       whose id is taken gets the lowest free one\n"                \
     "  --srdf FILE          ignores the pairs that an SRDF file disables, and no\n"      \
     "                       other pairs of links\n"                                      \
     "  --ignore NAME,NAME   a pair of links or bodies that is not tested, by name;\n"    \
@@ -87,10 +87,11 @@ struct robot_run_options {
     "                       mesh file package://NAME/FILE is NAME/FILE in the first\n"   \
     "                       folder that has it; else FILE in the nearest folder above\n" \
     "                       the robot that is called NAME, or whose package.xml has\n"   \
-    "                       this name\n"                                                 \
-    "\n"                                                                                 \
-    "Output:\n"                                                                          \
-    "  --verbose            lists the links, bodies and pairs that messages count\n"     \
+    "                       this name\n"
+
+/* The last part. */
+#define ROBOT_RUN_OUTPUT_USAGE                                                       \
+    "  --verbose            lists the links, bodies and pairs that messages count\n" \
     "  -h, --help\n"
 
 /* Takes a text that may be given once: the last of several would hide the others. */

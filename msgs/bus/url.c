@@ -18,7 +18,7 @@ enum {
     /* Holds about 120 of the largest datagrams, or thousands of pair queries. */
     DEFAULT_RECEIVE_BUFFER = 4 << 20,
     RECEIVE_BUFFER_MAX = INT_MAX / 2, /* the kernel doubles it */
-    URL_MAX = 200                     /* bytes, final 0 included */
+    URL_MAX = 200                     /* of the longest URL that is accepted, final 0 included */
 };
 
 /* Parses an integer from min to max. text: NULL: there is none. Options have base 0, since liblcm
@@ -64,15 +64,15 @@ bool bus_url_parse(const char *url, struct bus_url *out, char why[BUS_WHY_MAX])
     snprintf(copy, sizeof copy, "%s", url);
     char *address = good ? strsep(&options, "?") : NULL;
     good = good && (!*address || parse_address(address, &out->group));
-    if (options && !*options)
+    if (good && options && !*options)
         options = NULL;
     while (good && options)
         good = parse_option(strsep(&options, "&"), out);
     if (!good)
         snprintf(why, BUS_WHY_MAX,
-                 "'%.*s' is not an LCM bus over UDP multicast: write %s%s:%d, or another group "
-                 "(224.0.0.0 to 239.255.255.255) and port; after it ?ttl=1 to reach other hosts, "
-                 "and &recv_buf_size=BYTES",
-                 URL_MAX, url, scheme, DEFAULT_GROUP, DEFAULT_PORT);
+                 "'%.*s' is not an LCM bus URL: write %s%s:%d?ttl=0; the group is 224.0.0.0 to "
+                 "239.255.255.255, the port 1 to 65535, ttl 0 to 255 (1 or more reaches other "
+                 "hosts), and &recv_buf_size=BYTES is 1 to %d",
+                 URL_MAX, url, scheme, DEFAULT_GROUP, DEFAULT_PORT, RECEIVE_BUFFER_MAX);
     return good;
 }

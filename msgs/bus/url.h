@@ -14,8 +14,7 @@ struct bus_url {
 };
 
 /* On input: url as for bus_open(), not NULL. Does not read the environment.
- * On output: true and *out; or false, and why has one line: what is wrong, and what to write
- * instead. */
+ * On output: true and *out; or false, and why has one line, which shows the valid form. */
 bool bus_url_parse(const char *url, struct bus_url *out, char why[BUS_WHY_MAX]);
 
 #endif

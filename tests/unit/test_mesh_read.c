@@ -429,7 +429,7 @@ static void white_space_may_follow_ply(void **state)
     expect_mesh(read_text(VERTICES("ascii", "1") "end_header\n0 0 0\n \r\n\t"), 1, origin, 0, NULL);
 }
 
-/* Memory grows with what is read, not with counts: 100 GB are not to be had. */
+/* Memory grows with what is read: a header that states 2^32 elements allocates nothing. */
 static void counts_beyond_the_file_are_refused(void **state)
 {
     static const char *const formats_of_ply[] = {"ascii", "binary_little_endian",
@@ -853,8 +853,9 @@ static void bad_collada_is_refused(void **state)
     free(file);
 }
 
-/* Nodes that double 60 times, and 300 within each other, within a second. */
-/* Without a limit this would take 2^60 steps. */
+/* Nodes that double 60 times, and 300 nested ones. Without a limit, the first would take 2^60
+ * steps.
+ */
 static void collada_does_not_multiply(void **state)
 {
     struct file *file = malloc(sizeof *file);
