@@ -128,6 +128,8 @@ static bool read_query(struct search *search)
     if (search->count > 1)
         return refuse(search, " is there %" PRId64 " times: 'fmb log cut' numbers events anew",
                       search->count);
+    if (log_kind_is_result(search->kind))
+        return refuse(search, ": a result: give the number of its query");
     if (!log_kind_is_query(search->kind))
         return refuse(search, ": not a query of this service (--prefix chooses it)");
     const char *error = logged_query_read(query, search->kind, search->bytes, search->size);

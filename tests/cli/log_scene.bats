@@ -66,10 +66,10 @@ u32() {
     for event in 20 40 78; do
         scene 0 "$log" --event "$event"
         said "to repeat it: fmb query --local --json --box --point --certificate"
+        said 'sequence number '
         answers --box --point --certificate > "$T/$event.json"
         jq -e '.pairs[0] | has("certificate") and .a != .b and has("contact") == has("point")' "$T/$event.json" > "$T/jq"
     done
-    said 'sequence number '
 }
 
 @test "a difference in a replay is a difference of the single query" {
@@ -186,11 +186,11 @@ u32() {
     [ "$stderr" = "fmb: $log: event 5000: there is none" ]
     scene 1 "$log" --event 258
     said 'event 258: longer than its fields'
-    for channel in FMB_STATUS FMB_PAIR_RESULT; do
-        other=$("$TOOLS/events" "$log" | awk -v channel=$channel '$3 == channel && !found++ { print NR - 1 }')
-        scene 1 "$log" --event "$other"
-        said 'not a query of this service (--prefix chooses it)'
-    done
+    event_of() { "$TOOLS/events" "$log" | awk -v channel="$1" '$3 == channel && !found++ { print NR - 1 }'; }
+    scene 1 "$log" --event "$(event_of FMB_STATUS)"
+    said 'not a query of this service (--prefix chooses it)'
+    scene 1 "$log" --event "$(event_of FMB_PAIR_RESULT)"
+    said 'a result: give the number of its query'
     scene 2 "$T/nothing.log" --event 0
     [ "$stderr" = "fmb: $T/nothing.log: No such file or directory" ]
 }
