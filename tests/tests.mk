@@ -85,7 +85,7 @@ unit_names := $(filter-out $(if $(filter asan,$(MODE)),$(release_tests)), \
 	$(patsubst tests/unit/%.c,%,$(wildcard tests/unit/test_*.c)))
 unit_tests := $(unit_names:%=$(B)/tests/%)
 internal_tests := $(addprefix $(B)/tests/,test_engine_batch \
-	test_engine_tree test_outward test_kernels \
+	test_engine_tree test_limbs test_outward test_kernels \
 	test_placing test_engine_work test_hull_frame test_hull_verdict \
 	test_hull_gap test_hull_work test_hull_certificate test_checked)
 comma := ,

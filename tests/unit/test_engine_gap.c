@@ -540,6 +540,83 @@ static void nearly_parallel(void **state)
     }
 }
 
+/* ---- Batches ---- */
+
+enum { FRAMES = 64, PAIRS = 500 };
+
+static void batches_give_the_same(void **state)
+{
+    static struct fmb_body body[FRAMES];
+    static struct fmb_placement placement[FRAMES];
+    static struct fmb_prepared prepared[FRAMES];
+    static unsigned pairs[PAIRS][2];
+    static unsigned char verdicts[PAIRS];
+    static struct fmb_gap gaps[PAIRS];
+    static double contacts[PAIRS][2], boxes[PAIRS][2][FMB_DIM_MAX];
+    struct draw draw;
+    draw_begin(&draw, "batches_give_the_same");
+    for (long n = draw_sample(24); n > 0; n--) {
+        size_t open[PAIRS], open_count = 0;
+        for (unsigned i = 0; i < FRAMES; i += 2) {
+            struct question question = draw_question(&draw);
+            const struct solid *solid[2] = {&question.a, &question.b};
+            for (unsigned s = 0; s < 2; s++) {
+                double number[SOLID_NUMBERS_MAX];
+                const int count = solid_numbers(solid[s], number);
+                assert_int_equal(fmb_body_make(solid[s]->dim, solid[s]->shape, number,
+                                               (size_t) count, &body[i + s]),
+                                 FMB_OK);
+                placement[i + s] = solid_placement(solid[s], &body[i + s]);
+                assert_int_equal(fmb_prepare(&placement[i + s], 0, 1, &prepared[i + s]), FMB_OK);
+            }
+        }
+        for (int k = 0; k < PAIRS; k++)
+            for (int side = 0; side < 2; side++)
+                pairs[k][side] = (unsigned) draw_int(&draw, 0, FRAMES - 1);
+        struct fmb_batch batch = {.frames = prepared,
+                                  .frame_count = FRAMES,
+                                  .pairs = (const unsigned(*)[2]) pairs,
+                                  .pair_count = PAIRS,
+                                  .duration = draw_int(&draw, 0, 2),
+                                  .verdicts = verdicts,
+                                  .gaps = gaps};
+        batch.instant = batch.duration == 0;
+        batch.contacts = draw_coin(&draw) ? contacts : NULL;
+        batch.boxes = draw_coin(&draw) ? boxes : NULL;
+        if (draw_coin(&draw)) {
+            batch.open = open;
+            batch.open_count = &open_count;
+        }
+        fmb_decide_batch(&batch);
+        for (size_t k = 0; k < open_count; k++) {
+            struct fmb_batch one = batch;
+            assert_int_equal(verdicts[open[k]], 0);
+            assert_true(isnan(gaps[open[k]].bounds[0]));
+            one.pairs += open[k];
+            one.pair_count = 1;
+            one.verdicts += open[k];
+            one.gaps += open[k];
+            one.contacts = NULL;
+            one.boxes = NULL;
+            one.open = one.open_count = NULL;
+            assert_int_equal(fmb_decide_batch(&one), FMB_OK);
+        }
+        for (int k = 0; k < PAIRS; k++) {
+            struct fmb_answer answer;
+            const enum fmb_status status =
+                fmb_decide(fmb_method_default(), &placement[pairs[k][0]], &placement[pairs[k][1]],
+                           batch.duration, FMB_WANT_GAP, &answer);
+            if (status != FMB_OK) {
+                assert_int_equal(verdicts[k], 0);
+                assert_true(isnan(gaps[k].bounds[0]) && isnan(gaps[k].bounds[1]));
+                continue;
+            }
+            assert_int_equal(verdicts[k], answer.verdict);
+            assert_true(gap_check_same(&gaps[k], &answer.gap));
+        }
+    }
+}
+
 /* ---- Bodies of several frames ---- */
 
 enum { ROW = 40 };
@@ -1058,6 +1135,7 @@ int main(void)
         cmocka_unit_test(gaps_of_other_frames_are_refused),
         cmocka_unit_test(near_contact),
         cmocka_unit_test(nearly_parallel),
+        cmocka_unit_test(batches_give_the_same),
         cmocka_unit_test(bodies_of_several_frames),
         cmocka_unit_test(ties_do_not_depend_on_any_order),
         cmocka_unit_test(equal_depths_have_one_direction),

@@ -408,6 +408,46 @@ static void boxes_of_small_numbers_are_plain(void **state)
     assert_true(plain > ends - ends / 30 && ends > 0); /* few are known less well */
 }
 
+/* An edge that passes beside another one enters the other frame beyond where it leaves it, but in
+ * doubles at the same point. The intersection begins far from there. */
+static void an_edge_that_misses_is_not_in_the_box(void **state)
+{
+    const double above = 0x1p-60, down = 0x1p-40;
+    const struct question question = {{.dim = 3,
+                                       .shape = FMB_FACE,
+                                       .component = {{2, 0, 0}, {1, 1, -down - above}},
+                                       .local = {-1, 0, above}},
+                                      {.dim = 3,
+                                       .shape = FMB_TETRAHEDRON,
+                                       .component = {{0, 2, 0}, {1, 1, -1}, {-1, 1, -1}},
+                                       .local = {0, -1, 0}},
+                                      0};
+    assert_int_equal(referee_assert(&question), FMB_OVERLAPPING);
+}
+
+/* The first face is rotated into the plane z = 0, where the second lies. The integers are rows of
+ * the matrix of the rotation. Rounded, the planes cross. */
+static void rotated_faces_share_their_plane(void **state)
+{
+    static const double flat[9] = {-0.5, -0.5, 0, 2, 0, 0, 0, 2, 0};
+    for (int x = 1; x < 6; x++)
+        for (int y = 1; y < 6; y++) {
+            const int w = 1, z = 7;
+            const double number[6] = {w * w + x * x - y * y - z * z, 2 * (x * y - w * z),
+                                      2 * (x * z + w * y),           2 * (x * y + w * z),
+                                      w * w - x * x + y * y - z * z, 2 * (y * z - w * x)};
+            struct fmb_body body[2];
+            assert_int_equal(fmb_body_make(3, FMB_FACE, number, 6, &body[0]), FMB_OK);
+            assert_int_equal(fmb_body_make(3, FMB_FACE, flat, 9, &body[1]), FMB_OK);
+            const struct fmb_placement a = {
+                .body = &body[0], .orientation = {w, x, y, z}, .orientation_count = 4};
+            const struct fmb_placement b = {.body = &body[1]};
+            struct fmb_answer answer;
+            assert_int_equal(fmb_decide(fmb_method_default(), &a, &b, 0, 0, &answer), FMB_OK);
+            assert_int_equal(answer.verdict, FMB_OVERLAPPING);
+        }
+}
+
 /* Frames touch along an axis and slide along the others. Speeds and durations have all bits, and
  * the speeds far exponents, so that displacements in integers take more than two limbs. */
 static void frames_slide_at_any_speed(void **state)
@@ -445,6 +485,8 @@ static const struct CMUnitTest placed[] = {
     cmocka_unit_test(boxes_hold_travels_that_underflow),
     cmocka_unit_test(boxes_of_small_numbers_are_plain),
     cmocka_unit_test(frames_slide_at_any_speed),
+    cmocka_unit_test(an_edge_that_misses_is_not_in_the_box),
+    cmocka_unit_test(rotated_faces_share_their_plane),
 };
 
 int main(void)
