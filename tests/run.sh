@@ -48,7 +48,7 @@ run_suite() {
     case $build in
     "$release") sample=${FMB_FAST:+1} sample=${sample:-0.5} ;;
     "$asan")
-        # Longer traces of allocations, and the lengths of what strstr() searches, take a tenth of the time.
+        # Longer allocation traces, and checks of strstr(), cost a tenth of the time.
         export FMB_FAST=1 ASAN_OPTIONS=malloc_context_size=3:intercept_strstr=0
         case $what in
         test_engine_gap | test_hull_*) sample=0.5 ;; # draw few

@@ -303,7 +303,9 @@ static bool read_value(struct ply *ply, enum type type, double *value)
     }
     const size_t size = types[type].size;
     if (mesh_left(source) < size)
-        return mesh_refuse(source, source->end, "the file ends here: it is cut off, or a count in its header is too large");
+        return mesh_refuse(
+            source, source->end,
+            "the file ends here: it is cut off, or a count in its header is too large");
     ply->value_at = source->at;
     source->at += size;
     *value = value_of(mesh_bits(ply->value_at, size, ply->format == BIG_ENDIAN_BINARY), type);

@@ -1,8 +1,8 @@
 /* Answers pair and scene queries in stages: CHECKING the fields, FINDING bodies by handle, ADDING
  * bodies that have frames, DECIDING, CERTIFYING, COMPLETE. answer_job_step() does a part of one
- * stage; a refused query is COMPLETE at once. A pair of bodies of several frames, or with a hull or
- * a radius, or whose numbers span too many bits, and a pair by another method than the default, is
- * a scene of one listed pair; any other pair of frames is decided at once. */
+ * stage; a refused query is COMPLETE at once. A pair query becomes a scene of one listed pair if a
+ * body has several frames, a hull or a radius, if the decision may take long, or if the method is
+ * not the default. All other pairs are decided at once. */
 #include "answerer.h"
 
 #include "body.h"
@@ -442,7 +442,8 @@ static enum answer_stage begin_certificate(struct answer_job *job, enum fmb_stat
     return job->certificate ? certify(job) : complete_pair(job, status);
 }
 
-/* Decides a pair of frames, unless it takes steps, or another method than the default. */
+/* Decides a pair by the default method. Returns false if that takes steps, or if another method is
+ * requested. */
 static bool decide_at_once(struct answer_job *job)
 {
     const struct pair_query *query = &job->pair;

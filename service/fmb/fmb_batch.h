@@ -61,12 +61,11 @@ enum fmb_status fmb_prepare(const struct fmb_placement *placement, unsigned firs
 enum fmb_status fmb_decide_prepared(const struct fmb_prepared *a, const struct fmb_prepared *b,
                                     double duration, enum fmb_verdict *verdict);
 
-/* Decides a pair of placed bodies of one frame each, as fmb_decide() by the method certified with
- * FMB_WANT_TIMES, if that takes tens of microseconds at most and allocates no memory: a batch would
- * not leave this pair open.
+/* Decides a pair of placed bodies of one frame each, like fmb_decide() by the method certified with
+ * FMB_WANT_TIMES, if this allocates no memory and needs only the work that a batch does for a pair.
  *
- * In:  as of fmb_decide(), which does not refuse it
- * Returns false, with *answer unspecified, if it takes more. */
+ * In:  arguments that fmb_decide() accepts; they are not checked
+ * Returns true if the answer is complete; if false, *answer is unspecified. Reentrant. */
 bool fmb_decide_at_once(const struct fmb_placement *a, const struct fmb_placement *b,
                         double duration, unsigned want, struct fmb_answer *answer);
 

@@ -79,7 +79,7 @@ setup() {
     run "$BUILD/turning" --pairs 2
     ended 0
     [[ ${lines[-1]} == *", 0 wrong, "* ]]
-    # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED LACKS WIDE ...: none is open, to the oracle either.
+    # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED LACKS WIDE ...: neither the engine nor the oracle leaves one open.
     [ "$(awk '/^turn-(table|lift|land|tumble|door)/ { count++; open += $7 + $10 } END { print count, open }' <<< "$output")" = "9 0" ]
     [ "$(awk '/^turn-/ && !/^turn-(exponents|flat|thin)/ { wide += $12 } END { print wide }' <<< "$output")" = 0 ]
 }

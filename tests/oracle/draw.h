@@ -17,7 +17,7 @@ void draw_begin(struct draw *draw, const char *what);
  * 0); FMB_SAMPLE times as many where that is set. At least 1. */
 long draw_sample(long usual);
 
-/* 1, or fast where FMB_FAST is set: how far to step through a list of cases. */
+/* Returns the step through a list of cases: `fast` if FMB_FAST is set, otherwise 1. */
 int draw_step(int fast);
 
 uint64_t draw_bits(struct draw *draw);

@@ -1,8 +1,8 @@
 /* The exact method against the oracle in a small world, where nearly everything touches: all
  * numbers are small integers, and every degenerate case comes up.
  *
- * In the plane all pairs are decided, those that differ by a symmetry of the square or by their
- * order once: test_engine_metamorphic.c shows that their answers are the same. In space there are
+ * In the plane all pairs are decided, one of each class under the symmetries of the square and the
+ * order of the pair (test_engine_metamorphic.c tests these). In space there are
  * too many (of cuboids: 19,683 bodies at 64 places): a seeded sample is decided, whose size is
  * printed. FMB_SAMPLE=10 draws ten times as many; FMB_FAST=1 draws an eighth, and of the plane
  * takes one pair in 61. */

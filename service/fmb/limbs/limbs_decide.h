@@ -45,7 +45,7 @@
 
 /* ---- The list of normals ---- */
 
-/* Returns edge i of a frame, by number (slabs.h). */
+/* Returns the number of edge i of a frame (slabs.h). */
 static inline int edge_number(const struct kernel_traits traits, int f, int i)
 {
     return (f ? SLABS_EDGE_OF_B : 0) + edge_at(traits, f, i);

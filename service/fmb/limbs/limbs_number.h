@@ -10,7 +10,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Sums and products of a few limbs are inlined always, under AddressSanitizer never (inlined.h). */
+/* Sums and products of a few limbs are always inlined, except under AddressSanitizer (inlined.h).
+ */
 #ifdef INLINED_NEVER
 #define LIMBS_INLINE static inline
 #define LIMBS_UNROLL

@@ -43,7 +43,7 @@ enum limbs_view { LIMBS_OWN, LIMBS_ACROSS, LIMBS_WORLD, LIMBS_VIEWS };
 /* A pair. Lengths are integers times 2^unit of its span. Contains pointers into itself: must not be
  * copied. */
 struct limbs_pair {
-    struct kernel_traits traits; /* those of boxes */
+    struct kernel_traits traits; /* dimension and shapes of both frames; .box is set */
     const struct fmb_frame *frame[2];
     int limbs; /* of a number */
     /* For a box: half of its components, and its centre as the origin. */

@@ -18,7 +18,7 @@ struct clip {
     double low, high;
 };
 
-/* A bound of x / y: an upper one, or a lower one. In: the rounded quotient q lies in [0,2].
+/* Returns an upper or a lower bound of x / y. In: the rounded quotient q lies in [0,2].
  *
  * The bound is q moved by 2^-51 q, which is more than twice the error of q, even after the sum is
  * rounded. Quotients below 2^-900, where underflow may matter, become 0 in the lower bound and

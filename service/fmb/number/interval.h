@@ -45,7 +45,8 @@ static inline bool interval_same_products(double x, double y, double z, double w
     return xy == zw && fma(x, y, -xy) == fma(z, w, -zw);
 }
 
-/* 2^-52 |x| is between one and two units in the last place of a normal number. */
+/* Returns the sum, rounded outward. An end that was rounded inward moves by 2^-52 of itself, one to
+ * two units in the last place of a normal number. */
 static inline struct interval interval_sum(struct interval x, struct interval y)
 {
     struct interval sum = {x.low + y.low, x.high + y.high};
