@@ -78,7 +78,8 @@ setup() {
 @test "turning: no answer about turning bodies is wrong; bodies that rest, slide, hang, land or lift off are decided" {
     run "$BUILD/turning" --pairs 2
     ended 0
-    [[ ${lines[-1]} == *", 0 wrong, "* ]]
+    [[ ${lines[-1]} =~ ", 0 wrong, "([0-9]+)" undecided" ]]
+    [ "${BASH_REMATCH[1]}" -le 3 ]
     # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED LACKS WIDE ...: neither the engine nor the oracle leaves one open.
     [ "$(awk '/^turn-(table|lift|land|tumble|door)/ { count++; open += $7 + $10 } END { print count, open }' <<< "$output")" = "9 0" ]
     [ "$(awk '/^turn-/ && !/^turn-(exponents|flat|thin)/ { wide += $12 } END { print wide }' <<< "$output")" = 0 ]
