@@ -27,7 +27,7 @@ static const char usage[] =
     "ROBOT.urdf may be '-', standard input. Paths of mesh files are relative to its\n"
     "folder, or with '-' to the current one. Each scene is printed on one line.\n"
     "\n" ROBOT_RUN_USAGE
-    "  --margin M           the margin, in place of that of the scenes\n"
+    "  --margin M           replaces the margin of the scenes\n"
     "\n"
     "Output:\n" ROBOT_RUN_OUTPUT_USAGE
     "\n"

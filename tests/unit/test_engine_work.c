@@ -228,19 +228,17 @@ static void ends_of_shallow_contacts_are_found_by_their_polynomials(void **state
     assert_int_equal(fmb_body_make(3, FMB_BOX, side, 3, &body[0]), FMB_OK);
     assert_int_equal(fmb_body_make(3, FMB_BOX, plate, 3, &body[1]), FMB_OK);
     for (int k = 0; k < 8; k++) {
-        const double turned[4] = {1, 0, 0, 0.5 * k / 8}, quarter[4] = {1, 0, 0, 1};
+        const double z = 0.5 * k / 8;
         struct fmb_placement *moving = &placement[1];
         struct fmb_answer answer;
         moving->position[0] = moving->end_position[0] = 0.5 + sqrt(0.5) - 0x1p-30;
         moving->position[1] = moving->end_position[1] = 0.03125 * k;
         moving->orientation_count = 4;
         moving->end_count = 7;
-        for (int i = 0; i < 4; i++)
-            moving->orientation[i] = turned[i];
-        for (int i = 0; i < 4; i++) /* the product of both */
-            moving->end_orientation[i] = i == 0   ? turned[0] * quarter[0] - turned[3] * quarter[3]
-                                         : i == 3 ? turned[0] * quarter[3] + turned[3] * quarter[0]
-                                                  : 0;
+        moving->orientation[0] = 1;
+        moving->orientation[3] = z;
+        moving->end_orientation[0] = 1 - z; /* (1 + z k) (1 + k) */
+        moving->end_orientation[3] = 1 + z;
         const double before = exact_work;
         assert_int_equal(
             fmb_decide(fmb_method_default(), &placement[0], moving, 1, FMB_WANT_TIMES, &answer),

@@ -341,8 +341,8 @@ static unsigned want_of_contacts(const struct fmb_batch *batch)
            (batch->points ? FMB_WANT_POINT : 0);
 }
 
-/* Decides pair k by itself, or leaves it open. In: want, bits of want_of_contacts(); the contact of
- * the pair is NAN or final, its box and its point are NAN. */
+/* Decides pair k by itself, or leaves it open. In: want, bits of want_of_contacts(); the contact,
+ * the box and the point of the pair are each NAN or final. */
 static void decide_single(struct batch_block *block, size_t k, unsigned want)
 {
     const struct fmb_batch *batch = block->batch;

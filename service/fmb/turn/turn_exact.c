@@ -483,8 +483,8 @@ bool turn_exact_step(struct turn_exact *exact, enum turn_outcome *outcome)
     return true;
 }
 
-/* The polynomial of the least coefficients is at most that of any two vertices. De Casteljau's
- * subdivision at `at`, without divisions, gives its coefficients over the part. */
+/* The polynomial with the least coefficients is nowhere above the polynomial of any two vertices.
+ * De Casteljau's subdivision at `at`, without divisions, gives its coefficients over the part. */
 bool turn_exact_positive(const struct turn_exact *exact, double at, int late)
 {
     static const unsigned long factor[6] = {10, 2, 1, 1, 2, 10}; /* 10 / C(5, k) */

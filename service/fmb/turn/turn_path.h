@@ -70,8 +70,8 @@ void turn_path_at(const struct turn_path *path, int f, double s, double q[4],
 /* Sets path->pair to the pose at s, a multiple of 2^-52 in [0, 1]. */
 void turn_path_pose(struct turn_path *path, double s);
 
-/* Returns the verdict at s that doubles prove, or 0; *cores: that of the frames without their
- * radii. In: the pair is usable; toward: a direction to begin with, or 0. */
+/* Returns the verdict at s that doubles prove, or 0. *cores := the verdict without the
+ * radii, or 0. In: the pair is usable; toward: a direction to begin with, or 0. */
 enum fmb_verdict turn_look(struct turn_path *path, double s, const double toward[FMB_DIM_MAX],
                            struct support_nearest *nearest, enum fmb_verdict *cores);
 
