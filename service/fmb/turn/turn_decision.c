@@ -115,15 +115,24 @@ static enum fmb_verdict known_at(const struct turn_decision *decision, double s)
     return 0;
 }
 
-/* Returns the verdict at s if it is known or doubles give it. Otherwise begins the programs, unless
- * the decision is bounded, and returns 0: the verdict is known when they have ended. */
-static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
+/* Returns the verdict at s if it is known or doubles give it. Otherwise returns 0, and a bounded
+ * decision is exhausted. */
+static enum fmb_verdict verdict_in_doubles(struct turn_decision *decision, double s)
 {
     const enum fmb_verdict known = known_at(decision, s);
     const enum fmb_verdict verdict = known ? known : look(decision, s);
+    if (verdict == 0 && decision->bounded)
+        decision->exhausted = true;
+    return verdict;
+}
+
+/* The same; but if it returns 0, a decision that is not bounded has begun the programs, and the
+ * verdict is known when they have ended. */
+static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
+{
+    const enum fmb_verdict verdict = verdict_in_doubles(decision, s);
     if (verdict == 0 && !decision->bounded)
         begin_programs(decision, s, false);
-    decision->exhausted = decision->exhausted || (verdict == 0 && decision->bounded);
     return verdict;
 }
 
@@ -340,6 +349,14 @@ static void divide(struct turn_decision *decision, struct turn_interval interval
         push(decision, interval.lo, middle);
 }
 
+/* Removes a short interval that contains the end of the contact. */
+static void enclose_end(struct turn_decision *decision, struct turn_interval interval)
+{
+    decision->out[0] = fmin(decision->out[0], interval.lo);
+    decision->out[1] = fmax(decision->out[1], interval.hi);
+    pop(decision);
+}
+
 static void give_up(struct turn_decision *decision)
 {
     decision->undecided = true;
@@ -393,12 +410,15 @@ static bool is_next_to_contact(const struct turn_decision *decision, struct turn
                                           : false;
 }
 
-/* Stores a part of an interval, around its middle, over which a direction separates the frames.
- * Next to the known contact, the interval is then divided at the end of this part. */
+/* Stores a part of an interval, around its middle, over which the direction of the last search
+ * separates the frames. Next to the known contact, the interval is then divided at the end of this
+ * part. */
 static void remember_apart(struct turn_decision *decision, struct turn_interval interval,
-                           double middle, const struct turn_direction *direction)
+                           double middle)
 {
     const bool next = is_next_to_contact(decision, interval);
+    struct turn_direction direction[3];
+    turn_directions(&decision->path, decision->nearest.direction, 0, direction);
     turn_part(&decision->path, direction, middle, &interval.lo, &interval.hi);
     if (!(turn_distance(&decision->path, direction, interval.lo, interval.hi) > 0))
         return;
@@ -426,11 +446,6 @@ static bool skip_apart(struct turn_decision *decision, struct turn_interval inte
     return divides;
 }
 
-static bool is_tried(const struct turn_decision *decision, struct turn_interval interval)
-{
-    return decision->tried.lo == interval.lo && decision->tried.hi == interval.hi;
-}
-
 /* Whether directions are to be tried before the exact verdict within an interval: the direction of
  * the last search may cease to separate the frames there. */
 static bool may_cross(const struct turn_decision *decision, struct turn_interval interval)
@@ -439,7 +454,7 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     struct turn_direction direction[3];
     bool may = false;
     if (path->pair.rounded || !path->pair.usable || !is_next_to_contact(decision, interval) ||
-        interval.hi - interval.lo <= 2 * short_interval || is_tried(decision, interval) ||
+        interval.hi - interval.lo <= 2 * short_interval ||
         decision->split == cut_of(decision, interval))
         return false;
     const unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
@@ -448,54 +463,54 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     return may;
 }
 
+/* Proves that the frames are apart over an interval if a direction of the last search does, and
+ * removes it. Returns the greatest lower bound of their distance that was computed. */
+static double prove_in_doubles(struct turn_decision *decision, struct turn_interval interval)
+{
+    struct turn_direction direction[3];
+    const unsigned count =
+        turn_directions(&decision->path, decision->nearest.direction, 0, direction);
+    double most = -INFINITY;
+    for (unsigned k = 0; k < count && !(most > 0); k++) {
+        most = fmax(most, turn_distance(&decision->path, &direction[k], interval.lo, interval.hi));
+        if (most > 0)
+            prove(decision, interval, &direction[k]);
+    }
+    return most;
+}
+
 /* Examines a time within an interval, in doubles if possible. A short interval next to the known
  * contact encloses its end. */
 static void look_at(struct turn_decision *decision, struct turn_interval interval)
 {
-    const double middle = cut_of(decision, interval), width = interval.hi - interval.lo;
-    struct turn_direction direction[3];
-    if (width <= short_interval && is_next_to_contact(decision, interval)) {
-        decision->out[0] = fmin(decision->out[0], interval.lo);
-        decision->out[1] = fmax(decision->out[1], interval.hi);
-        pop(decision);
+    const double middle = cut_of(decision, interval);
+    const bool is_short = interval.hi - interval.lo <= short_interval;
+    if (is_short && is_next_to_contact(decision, interval)) {
+        enclose_end(decision, interval);
         return;
     }
-    enum fmb_verdict verdict = known_at(decision, middle);
-    if (verdict == 0)
-        verdict = look(decision, middle);
-    if (verdict == 0 && decision->bounded) {
-        decision->exhausted = true;
+    const enum fmb_verdict verdict = verdict_in_doubles(decision, middle);
+    if (decision->exhausted)
         return;
-    }
-    if (verdict == 0 && may_cross(decision, interval)) {
-        decision->tried = interval;
-        begin_corners(decision);
-        return;
-    }
     if (verdict == 0) {
-        begin_programs(decision, middle, false);
+        if (may_cross(decision, interval))
+            begin_corners(decision);
+        else
+            begin_programs(decision, middle, false);
         return;
     }
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
         return;
     if (verdict == FMB_SEPARATED && decision->looked == middle && decision->sure) {
-        const unsigned count =
-            turn_directions(&decision->path, decision->nearest.direction, 0, direction);
-        double most = -INFINITY;
-        for (unsigned k = 0; k < count && !(most > 0); k++) {
-            most =
-                fmax(most, turn_distance(&decision->path, &direction[k], interval.lo, interval.hi));
-            if (most > 0)
-                prove(decision, interval, &direction[k]);
-        }
-        if (most > 0)
+        const double least = prove_in_doubles(decision, interval);
+        if (least > 0)
             return;
         const bool beside = interval.hi == decision->in[0] || interval.lo == decision->in[1];
         const bool close = decision->path.pair.rounded && !decision->bounded && !beside &&
-                           most > -close_bound * decision->path.pair.reach;
-        if (width > short_interval && !close) {
+                           least > -close_bound * decision->path.pair.reach;
+        if (!is_short && !close) {
             if (!decision->proof)
-                remember_apart(decision, interval, middle, &direction[0]);
+                remember_apart(decision, interval, middle);
             divide(decision, interval);
             return;
         }
@@ -504,10 +519,19 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         decision->exhausted = true;
     else if (decision->path.pair.rounded)
         begin_nearest(decision, middle);
-    else if (is_tried(decision, interval))
-        divide(decision, interval);
     else
         begin_corners(decision);
+}
+
+/* Determines the exact verdict within an interval over which no direction separates the frames. */
+static void look_exactly(struct turn_decision *decision, struct turn_interval interval)
+{
+    const double middle = cut_of(decision, interval);
+    const enum fmb_verdict verdict = known_at(decision, middle);
+    if (verdict == 0)
+        begin_programs(decision, middle, false);
+    else if (verdict == FMB_SEPARATED || !add_contact(decision, middle, verdict, interval))
+        divide(decision, interval);
 }
 
 /* If the frames rest on each other, they touch at both ends of the interval, and no other direction
@@ -550,8 +574,8 @@ static void take_crossing(struct turn_decision *decision, struct turn_interval i
 }
 
 /* Divides an interval over which no direction separates the frames. If a direction separates them
- * over a part of it, this part is removed, and the remainder is examined shortly after the root. If
- * the directions were tried first, determines the verdict before the interval is divided. */
+ * over a part of it, this part is removed, and the remainder is examined shortly after the root.
+ * Otherwise the exact verdict comes first, unless it is known. */
 static void divide_open(struct turn_decision *decision, struct turn_interval interval)
 {
     const bool late = decision->phase == TURN_LAST;
@@ -560,11 +584,8 @@ static void divide_open(struct turn_decision *decision, struct turn_interval int
         push(decision, late ? interval.lo : decision->cleared,
              late ? decision->cleared : interval.hi);
         decision->split = decision->beyond;
-    } else if (is_tried(decision, interval) &&
-               known_at(decision, cut_of(decision, interval)) == 0) {
-        decision->stage = TURN_LOOK;
     } else {
-        divide(decision, interval);
+        decision->stage = TURN_EXACT;
     }
 }
 
@@ -636,9 +657,7 @@ static void look_at_ends(struct turn_decision *decision, struct turn_interval in
     } else if (interval.hi - interval.lo > short_interval) {
         divide(decision, interval);
     } else if (any) {
-        decision->out[0] = fmin(decision->out[0], interval.lo);
-        decision->out[1] = fmax(decision->out[1], interval.hi);
-        pop(decision);
+        enclose_end(decision, interval);
     } else if (interval.hi - interval.lo > least_interval) {
         divide(decision, interval);
     } else {
@@ -705,7 +724,7 @@ static double approach_root(struct turn_decision *decision, const struct turn_di
     const int late = decision->phase == TURN_LAST;
     double lo = fmin(apart, decision->in[late]), hi = fmax(apart, decision->in[late]);
     turn_part(&decision->path, direction, apart, &lo, &hi);
-    const double before = late ? lo : hi, step = 2 * floor((root - before) * 0x1p50) * 0x1p-50;
+    const double before = late ? lo : hi, step = 3 * floor((root - before) * 0x1p50) * 0x1p-50;
     if (before == apart || !separates(decision, direction, apart, before))
         return apart;
     if (step * margin(decision) > 0)
@@ -973,6 +992,8 @@ static bool work_once(struct turn_decision *decision, struct fmb_answer *answer)
         return false;
     if (decision->stage == TURN_LOOK)
         look_at(decision, interval);
+    else if (decision->stage == TURN_EXACT)
+        look_exactly(decision, interval);
     else if (exact)
         try_corner(decision, interval);
     else
@@ -1042,7 +1063,7 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->programs = NULL;
     out->exact.trial = NULL;
     out->looks = out->next_known = out->apart_count = 0;
-    out->looked = out->nearest_at = out->split = out->tried.lo = -1;
+    out->looked = out->nearest_at = out->split = -1;
     out->nearest_count = 0;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
     memset(out->nearest.direction, 0, sizeof out->nearest.direction);

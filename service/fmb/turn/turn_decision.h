@@ -77,7 +77,7 @@ struct turn_decision {
     unsigned want;
     bool swapped, bounded, overlaps, undecided, exhausted;
     enum { TURN_VERDICT, TURN_FIRST, TURN_LAST, TURN_GAP, TURN_POINT, TURN_COMPLETE } phase;
-    enum { TURN_LOOK, TURN_CORNER, TURN_ENDS } stage;
+    enum { TURN_LOOK, TURN_CORNER, TURN_EXACT, TURN_ENDS } stage;
     struct turn_path path;
     struct support_nearest nearest; /* of the last search in doubles */
     double looked, toward[FMB_DIM_MAX];
@@ -96,14 +96,13 @@ struct turn_decision {
     unsigned apart_count;                   /* all ever added; the last TURN_KNOWN are kept */
     struct turn_exact exact;
     bool has_exact;
-    struct turn_interval tried; /* directions were tried over it before the exact verdict */
-    double split;               /* a time at which to divide the interval that contains it, or -1 */
-    double cleared;             /* a direction tried separates the frames up to this time, or NAN */
-    double beyond;              /* the time at which to divide the remainder */
-    double nearest_at;          /* the time of the nearest point in `exact`, or -1 */
-    unsigned nearest_count;     /* directions towards this point */
-    double corners_at;          /* the time of the listed directions; -1: by vertices */
-    struct programs *programs;  /* of the pose of the path */
+    double split;              /* a time at which to divide the interval that contains it, or -1 */
+    double cleared;            /* a direction tried separates the frames up to this time, or NAN */
+    double beyond;             /* the time at which to divide the remainder */
+    double nearest_at;         /* the time of the nearest point in `exact`, or -1 */
+    unsigned nearest_count;    /* directions towards this point */
+    double corners_at;         /* the time of the listed directions; -1: by vertices */
+    struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
     signed char sign[TURN_CORNERS];
     struct turn_gap gap;
