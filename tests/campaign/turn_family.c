@@ -310,13 +310,15 @@ static void clouds(struct draw *draw, const struct family *family, const struct 
     bring_together(draw, draw_little(draw), out);
 }
 
+/* amount: 1: all have a radius. */
 static void round_ones(struct draw *draw, const struct family *family, const struct cell *cell,
                        struct question *out)
 {
     any_turn(draw, family, cell, out);
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
-        solid->radius = draw_int(draw, 0, 3) == 0 ? 0 : draw_uniform(draw, 0, 1);
+        solid->radius =
+            family->amount == 0 && draw_int(draw, 0, 3) == 0 ? 0 : draw_uniform(draw, 0, 1);
         if (solid->shape == FMB_HULL) /* balls and capsules are included */
             solid->vertex_count = draw_int(draw, 1, 3);
     }
@@ -686,6 +688,7 @@ static const struct family families[] = {
     {"turn-hull-8", "hulls of 1 to 8 vertices", near, .amount = 1e-7, .cells = FAMILY_A_HULL},
     {"turn-hull-100", "hulls of 13 to 100 vertices", clouds, .amount = 100, .cells = FAMILY_A_HULL},
     {"turn-round", "balls, capsules and padded shapes", round_ones},
+    {"turn-capsule", "balls, capsules and padded triangles", round_ones, .amount = 1, .cells = FAMILY_A_HULL},
 };
 /* clang-format on */
 

@@ -513,6 +513,26 @@ static void rounded_bodies_rest_and_hang(void **state)
     }
 }
 
+/* Two crossed capsules approach slowly while each turns about its own core, so that the direction
+ * of the nearest points is fixed in neither. */
+static void capsules_that_roll_approach_slowly(void **state)
+{
+    static const double rod[] = {-1, 0, 0, 1, 0, 0}, across[] = {0, -1, 0, 0, 1, 0};
+    struct resting rest;
+    set_rounded(&rest, 0, rod, 6, 0.25);
+    set_rounded(&rest, 1, across, 6, 0.125);
+    rest.placement[0] =
+        turning(&rest.body[0], (const double[]){3, -1, 0, 0}, (const double[]){3, 1, 0, 0});
+    rest.placement[1] =
+        turning(&rest.body[1], (const double[]){3, 0, -1, 0}, (const double[]){3, 0, 2, 0});
+    lift(&rest, 0.375 + 0x1p-20, 0.375 - 0x1p-30);
+    expect(rest.placement, FMB_OVERLAPPING, 2 / (1 + 0x1p-10), 2);
+    lift(&rest, 0.375 + 0x1p-20, 0.375 + 0x1p-40);
+    expect(rest.placement, FMB_SEPARATED, 0, 0);
+    lift(&rest, 0.375 + 0x1p-20, 0.375);
+    expect(rest.placement, FMB_TOUCHING, 2, 2);
+}
+
 /* A point passes through a turning plate at an irrational time. The interiors meet then, and at no
  * time that the engine tests. */
 static void a_point_through_a_turning_plate_is_never_called_touching(void **state)
@@ -880,6 +900,7 @@ int main(void)
         cmocka_unit_test(doors_hang_on_their_posts),
         cmocka_unit_test(cubes_tumble_over_an_edge),
         cmocka_unit_test(rounded_bodies_rest_and_hang),
+        cmocka_unit_test(capsules_that_roll_approach_slowly),
         cmocka_unit_test(a_point_through_a_turning_plate_is_never_called_touching),
         cmocka_unit_test(windows_join),
         cmocka_unit_test(straight_motion_as_an_end),

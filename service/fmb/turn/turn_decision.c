@@ -209,30 +209,61 @@ static bool may_separate(const struct turn_decision *decision, unsigned k,
                          struct turn_interval interval)
 {
     struct turn_direction direction;
-    if (!decision->path.pair.usable || decision->corners_at >= 0)
+    if (!decision->path.pair.usable || decision->corners[k].vertex[0] >= TURN_ROUNDED)
         return true;
     turn_direction_of(decision->path.pair.view, &decision->corners[k], &direction);
     return turn_may_separate(&decision->path, &direction, decision->sign[k], interval.lo,
                              interval.hi);
 }
 
+/* Keeps what the directions towards the nearest point depend on. */
+static void take_nearest(struct turn_decision *decision, const struct programs_proof *proof)
+{
+    unsigned count[2] = {0, 0};
+    decision->nearest_verdict = proof->verdict;
+    for (int f = 0; f < 2; f++)
+        for (unsigned i = 0; i < proof->count; i++) {
+            uint16_t *seen = &decision->nearest_edges.vertex[2 * f];
+            const uint16_t v = (uint16_t) proof->column[i].vertex[f];
+            const bool is_new = count[f] == 0 || (v != seen[0] && (count[f] == 1 || v != seen[1]));
+            if (is_new && count[f] < 2)
+                seen[count[f]] = v;
+            count[f] += is_new;
+        }
+    decision->nearest_are_edges = count[0] == 2 && count[1] == 2;
+}
+
+/* Lists the directions towards the nearest point: the product of the edges that it is on, and the
+ * directions fixed in a frame. A proof consists of doubles; in it, these are rounded. */
+static void list_nearest(struct turn_decision *decision)
+{
+    const enum fmb_verdict verdict = decision->nearest_verdict;
+    const uint16_t *v = decision->nearest_edges.vertex;
+    const uint16_t fixed =
+        decision->proof && verdict == FMB_SEPARATED ? TURN_ROUNDED : TURN_NEAREST;
+    decision->corner_count = 0;
+    if (verdict == FMB_OVERLAPPING || (verdict == FMB_TOUCHING && !decision->path.pair.rounded))
+        return;
+    if (decision->nearest_are_edges)
+        add_corners(decision, 2, v[0], v[1], v[2], v[3]);
+    for (int f = 0; f < 2; f++) {
+        decision->corners[decision->corner_count] = (struct turn_corners){f, {fixed}};
+        decision->sign[decision->corner_count++] = 1;
+    }
+}
+
 /* Begins to try the directions towards the nearest point at one time, which the programs compute.
- * The rounded directions are tried first, then the exact directions if frames with a radius touch
- * at this time. A direction that is rounded by u is off by u^2 in its bound. */
+ */
 static void begin_nearest(struct turn_decision *decision, double at)
 {
     decision->stage = TURN_CORNER;
     decision->outcome = TURN_OPEN;
     decision->corner = 0;
-    for (unsigned k = 0; k < 4; k++) {
-        const uint16_t which = k < 2 ? TURN_ROUNDED : TURN_NEAREST;
-        decision->corners[k] = (struct turn_corners){(int) k % 2, {which}};
-        decision->sign[k] = 1;
-    }
-    decision->corner_count = decision->nearest_count;
     decision->corners_at = at;
     decision->cleared = NAN;
-    if (decision->nearest_at != at)
+    if (decision->nearest_at == at)
+        list_nearest(decision);
+    else
         begin_programs(decision, at, true);
 }
 
@@ -453,7 +484,7 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     const struct turn_path *path = &decision->path;
     struct turn_direction direction[3];
     bool may = false;
-    if (path->pair.rounded || !path->pair.usable || !is_next_to_contact(decision, interval) ||
+    if (!path->pair.usable || !is_next_to_contact(decision, interval) ||
         interval.hi - interval.lo <= 2 * short_interval ||
         decision->split == cut_of(decision, interval))
         return false;
@@ -493,10 +524,12 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
     if (decision->exhausted)
         return;
     if (verdict == 0) {
-        if (may_cross(decision, interval))
-            begin_corners(decision);
-        else
+        if (!may_cross(decision, interval))
             begin_programs(decision, middle, false);
+        else if (decision->path.pair.rounded)
+            begin_nearest(decision, decision->phase == TURN_LAST ? interval.hi : interval.lo);
+        else
+            begin_corners(decision);
         return;
     }
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
@@ -955,11 +988,9 @@ static bool take_programs(struct turn_decision *decision, struct fmb_answer *ans
     if (rounded || decision->stage == TURN_CORNER) {
         begin_exact(decision);
         turn_exact_take(&decision->exact, programs_proof(programs));
+        take_nearest(decision, programs_proof(programs));
         decision->nearest_at = at;
-        decision->nearest_count = verdict == FMB_SEPARATED             ? 2
-                                  : rounded && verdict == FMB_TOUCHING ? 4
-                                                                       : 0;
-        decision->corner_count = decision->nearest_count;
+        list_nearest(decision);
     }
     programs_end(programs, NULL);
     decision->programs = NULL;
@@ -1064,7 +1095,6 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->exact.trial = NULL;
     out->looks = out->next_known = out->apart_count = 0;
     out->looked = out->nearest_at = out->split = -1;
-    out->nearest_count = 0;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
     memset(out->nearest.direction, 0, sizeof out->nearest.direction);
     for (int k = 0; k < TURN_KNOWN; k++)

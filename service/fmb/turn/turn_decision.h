@@ -14,8 +14,8 @@
  *             tried. If neither frame has a radius, the directions are given by vertices: all
  *             normals of faces and all products of edges of frames with few vertices; for hulls,
  *             the normals and products near the nearest point. For frames with a radius, and also
- *             over the shortest intervals, the directions point towards the exact nearest point
- *             and are fixed in either frame.
+ *             over the shortest intervals, the directions point towards the exact nearest point:
+ *             they are fixed in either frame, or the product of the edges that the point is on.
  *
  * The verdict is OVERLAPPING if the frames overlap at an examined time. Otherwise the intervals
  * cover the window, and the frames do not overlap in any of them; the verdict is TOUCHING if they
@@ -96,11 +96,13 @@ struct turn_decision {
     unsigned apart_count;                   /* all ever added; the last TURN_KNOWN are kept */
     struct turn_exact exact;
     bool has_exact;
-    double split;              /* a time at which to divide the interval that contains it, or -1 */
-    double cleared;            /* a direction tried separates the frames up to this time, or NAN */
-    double beyond;             /* the time at which to divide the remainder */
-    double nearest_at;         /* the time of the nearest point in `exact`, or -1 */
-    unsigned nearest_count;    /* directions towards this point */
+    double split;      /* a time at which to divide the interval that contains it, or -1 */
+    double cleared;    /* a direction tried separates the frames up to this time, or NAN */
+    double beyond;     /* the time at which to divide the remainder */
+    double nearest_at; /* the time of the nearest point in `exact`, or -1 */
+    enum fmb_verdict nearest_verdict;  /* at this time */
+    struct turn_corners nearest_edges; /* the edges that this point is on, if nearest_are_edges */
+    bool nearest_are_edges;
     double corners_at;         /* the time of the listed directions; -1: by vertices */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];

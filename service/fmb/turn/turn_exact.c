@@ -10,12 +10,13 @@
  * all coefficients of one of its coordinates are of one sign. n . x is not constant on a solid
  * frame, nor on the frame in which n is fixed if m . x differs between two of its vertices.
  *
- * Radii: let R be their sum. If n = N m, the frames are apart where n . (b - a) > R |n|. With the
- * positive factors of the polynomial, |n| is |m| |q_A|^2 |q_B|^2, so the coefficients of
- * R |m| |q_A|^2 |q_B|^2 are subtracted. If R |m| is not a whole number of units, it is replaced by
- * an upper bound that is too large by less than 2^-ROOT_BITS of a unit. (Along such a direction the
- * frames never rest on each other, since n . (b - a) has rational coefficients.) Frames with a
- * radius are solid. */
+ * Radii: let R be their sum. The frames are apart where n . (b - a) > R |n|. If n = N m, then with
+ * the positive factors of the polynomial |n| is |m| |q_A|^2 |q_B|^2, and the coefficients of
+ * R |m| |q_A|^2 |q_B|^2 are subtracted. For a product of edges |n| is at most the polynomial whose
+ * coefficients are the lengths of those of n; R times this polynomial is subtracted. A length that
+ * is not a whole number of units is replaced by an upper bound that is too large by less than
+ * 2^-ROOT_BITS of a unit. (Along such a direction the frames never rest on each other, since
+ * n . (b - a) has rational coefficients.) Frames with a radius are solid. */
 #include "turn_exact.h"
 
 #include "integer.h"
@@ -384,14 +385,13 @@ static void end_scan(struct turn_trial *trial)
     trial->next = 0;
 }
 
-/* value := (value - R |m| norm) 2^ROOT_BITS, or less. In: the direction m is fixed in a frame; for
- * frames with a radius no product of edges is tried. */
-static void subtract_radius(const struct turn_exact *exact)
+/* Returns R |v| 2^(ROOT_BITS + bits), rounded up to a multiple of 2^bits. */
+static mpz_srcptr radius_along(const struct turn_exact *exact, vector v)
 {
     struct work *work = &exact->trial->work;
     mpz_ptr root = work->least, left = work->other;
     mpz_set_ui(root, 0);
-    add_dot(work->m[0], work->m[0], root);
+    add_dot(v, v, root);
     mpz_mul(root, root, exact->radius);
     mpz_mul(root, root, exact->radius);
     mpz_mul_2exp(root, root, 2 * ROOT_BITS);
@@ -399,9 +399,25 @@ static void subtract_radius(const struct turn_exact *exact)
     if (mpz_sgn(left) != 0)
         mpz_add_ui(root, root, 1);
     mpz_mul_2exp(root, root, exact->trial->bits);
-    for (int k = 0; k < 6; k++) {
+    return root;
+}
+
+/* value := (value - R |n|) 2^ROOT_BITS, or less */
+static void subtract_radius(const struct turn_exact *exact)
+{
+    struct work *work = &exact->trial->work;
+    for (int k = 0; k < 6; k++)
         mpz_mul_2exp(work->value[k], work->value[k], ROOT_BITS);
-        mpz_submul(work->value[k], work->norm[k], root);
+    if (exact->trial->of < 2) {
+        mpz_srcptr along = radius_along(exact, work->m[0]);
+        for (int k = 0; k < 6; k++)
+            mpz_submul(work->value[k], work->norm[k], along);
+        return;
+    }
+    for (int k = 0; k < 5; k++) {
+        mpz_srcptr along = radius_along(exact, work->n[k]);
+        for (int raised = k; raised <= k + 1; raised++)
+            mpz_sub(work->value[raised], work->value[raised], along);
     }
 }
 

@@ -431,7 +431,8 @@ bool turn_may_separate(const struct turn_path *path, const struct turn_direction
     bool may = true;
     set_polynomial(path, direction, sign, lo, hi, &of);
     for (int k = 0; k < 6; k++)
-        may = may && !(of.value[k] < -0x1p12 * binomial[k] * of.error);
+        may = may && !(of.value[k] - path->pair.radius[1] * of.length[k] <
+                       -0x1p12 * binomial[k] * of.error);
     return may;
 }
 
