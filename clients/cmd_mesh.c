@@ -27,19 +27,13 @@ static const char usage[] =
     "\n"
     "Transformations, applied in the order given. Those after a file apply to that\n"
     "mesh, those before the first file to both.\n"
-    "  --scale S            S, or X,Y,Z: a factor for each axis\n"
+    "  --scale S            S, or X,Y,Z: a factor for each axis; -1,1,1 mirrors in x\n"
     "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the\n"
     "                       right-hand rule\n"
-    "  --mirror AXIS        x becomes -x, or y, or z\n"
     "  --translate X,Y,Z\n"
     "  --velocity X,Y,Z     the mesh moves this far per second: faces meet at some\n"
     "                       time of the window, and the answer says when\n"
     "  --duration T         length of the window, in seconds (1)\n"
-    "\n"
-    "Query:\n"
-    "  --as tetrahedra      a face is the tetrahedron of its edges and its unit\n"
-    "                       normal, as in the article; --as faces: a triangle (the\n"
-    "                       default)\n"
     "\n"
     "Output:\n"
     "  --json               one line of JSON: counts, and all pairs\n"
@@ -52,7 +46,7 @@ static const char usage[] =
     "become the nearest doubles; transformations round each coordinate, the same way\n"
     "on every machine.\n"
     "\n"
-    "  fmb mesh bunny.ply --scale 1000 bunny.ply --scale 1000 --mirror x \\\n"
+    "  fmb mesh bunny.ply --scale 1000 bunny.ply --scale -1000,1000,1000 \\\n"
     "    --translate 50,-10,0\n"
     "\n"
     "Exit codes: 0 answered, 1 it could not be answered, 2 wrong usage, or a file\n"
@@ -69,7 +63,6 @@ struct mesh_options {
     struct placed placed[2];
     double duration;
     bool json;
-    enum mesh_as as;
     struct output_options html;
 };
 
@@ -111,25 +104,13 @@ static bool take_scale(const struct args *args, void *placed)
     return add_step(args, &step, placed);
 }
 
-static bool is_axis(char letter)
-{
-    return letter >= 'x' && letter <= 'z';
-}
-
 static bool take_rotate(const struct args *args, void *placed)
 {
     struct mesh_step step = {.kind = MESH_ROTATE, .axis = *optarg - 'x'};
-    if (!is_axis(*optarg) || optarg[1] != ',' || args_numbers(optarg + 2, 3, step.number) != 1)
+    if (strspn(optarg, "xyz") != 1 || optarg[1] != ',' ||
+        args_numbers(optarg + 2, 3, step.number) != 1)
         return args_error(args, "--rotate: expected an axis and degrees, such as z,90, found '%s'",
                           optarg);
-    return add_step(args, &step, placed);
-}
-
-static bool take_mirror(const struct args *args, void *placed)
-{
-    const struct mesh_step step = {.kind = MESH_MIRROR, .axis = *optarg - 'x'};
-    if (!is_axis(*optarg) || optarg[1])
-        return args_error(args, "--mirror: expected x, y or z, found '%s'", optarg);
     return add_step(args, &step, placed);
 }
 
@@ -151,14 +132,6 @@ static bool take_velocity(const struct args *args, void *out)
             memcpy(placed[which].velocity, velocity, sizeof velocity);
         }
     return true;
-}
-
-static bool take_as(const struct args *args, void *out)
-{
-    enum mesh_as *as = out;
-    *as = strcmp(optarg, "tetrahedra") == 0 ? MESH_TETRAHEDRA : MESH_FACES;
-    return *as == MESH_TETRAHEDRA || strcmp(optarg, "faces") == 0 ||
-           args_error(args, "--as: there are faces and tetrahedra, not '%s'", optarg);
 }
 
 /* ---- Reading --------------------------------------------------------------------------------- */
@@ -266,7 +239,6 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
     const struct mesh_query query = {
         .a = &mesh[0],
         .b = &mesh[1],
-        .as = options->as,
         .velocity = {options->placed[0].moving ? options->placed[0].velocity : NULL,
                      options->placed[1].moving ? options->placed[1].velocity : NULL},
         .duration = options->duration};
@@ -275,9 +247,7 @@ static int intersect(const struct mesh_options *options, const struct mesh mesh[
     const enum fmb_status status = mesh_intersect(&query, &intersection);
     progress_end();
     if (status != FMB_OK) {
-        complain("%s", status == FMB_NOT_FINITE
-                           ? "the normal of a face is beyond the doubles: scale the meshes"
-                           : fmb_status_text((int) status));
+        complain("%s", fmb_status_text((int) status));
         return ARGS_FAILED;
     }
     if (options->json)
@@ -298,11 +268,9 @@ int cmd_mesh(int argc, char **argv)
     const struct args_option own[] = {
         {"scale", ARGS_OTHER, options.placed, .take = take_scale},
         {"rotate", ARGS_OTHER, options.placed, .take = take_rotate},
-        {"mirror", ARGS_OTHER, options.placed, .take = take_mirror},
         {"translate", ARGS_OTHER, options.placed, .take = take_translate},
         {"velocity", ARGS_OTHER, options.placed, .take = take_velocity},
         {"duration", ARGS_NUMBER, &options.duration, .high = DBL_MAX},
-        {"as", ARGS_OTHER, &options.as, .take = take_as},
         {"json", ARGS_FLAG, .out = &options.json},
         {"html", ARGS_TEXT, .out = &options.html.path},
         {"force", ARGS_FLAG, .out = &rules.force},

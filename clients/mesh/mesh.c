@@ -4,13 +4,11 @@
 #include "mesh_source.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* ---- Formats --------------------------------------------------------------------------------- */
 
@@ -52,7 +50,7 @@ static bool read_unknown(struct mesh_source *source)
                        "no PLY, STL, OBJ or COLLADA file, by its name nor by its contents");
 }
 
-static bool read_any(struct mesh_source *source, const char *name, struct mesh *out)
+static bool read_any(struct mesh_source *source, const char *name)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
     if (source->at == source->end)
@@ -61,24 +59,24 @@ static bool read_any(struct mesh_source *source, const char *name, struct mesh *
         return mesh_refuse(source, source->begin,
                            "a Git LFS pointer, not the mesh: run 'git lfs pull'");
     if (begins_with(source, "ply") && mesh_is_space(source->at[3]))
-        return mesh_ply(source, out);
+        return mesh_ply(source);
     if (mesh_is_stl_binary(source))
-        return mesh_stl_binary(source, out);
+        return mesh_stl_binary(source);
     if (begins_with(source, mark))
         source->at += strlen(mark);
     const unsigned char *first = mesh_skip_spaces(source->at);
     if (*first == '<' || ends_with(name, ".dae"))
-        return mesh_dae(source, out);
+        return mesh_dae(source);
     if (strncasecmp((const char *) first, "solid", 5) == 0 && mesh_ends_word(source, first + 5) &&
         !has_zero(source))
-        return mesh_stl_ascii(source, out);
+        return mesh_stl_ascii(source);
     if (ends_with(name, ".obj"))
-        return mesh_obj(source, out);
+        return mesh_obj(source);
     if (ends_with(name, ".stl"))
-        return mesh_stl_binary(source, out);
+        return mesh_stl_binary(source);
     if (ends_with(name, ".ply"))
-        return mesh_ply(source, out);
-    return mesh_is_obj_statement(source, first_statement(source)) ? mesh_obj(source, out)
+        return mesh_ply(source);
+    return mesh_is_obj_statement(source, first_statement(source)) ? mesh_obj(source)
                                                                   : read_unknown(source);
 }
 
@@ -89,11 +87,11 @@ bool mesh_parse(const void *bytes, size_t size, const char *name, enum mesh_face
     source.at = source.begin;
     source.end = source.begin + size;
     error[0] = '\0';
-    *out = (struct mesh){0};
-    if (read_any(&source, name, out))
-        return true;
-    mesh_free(out);
-    return false;
+    const bool good = read_any(&source, name);
+    if (!good)
+        mesh_free(&source.mesh);
+    *out = source.mesh;
+    return good;
 }
 
 void mesh_free(struct mesh *mesh)
@@ -106,53 +104,38 @@ void mesh_free(struct mesh *mesh)
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-/* Returns the bytes of an open file, which the caller frees; or NULL, and the error. */
-static unsigned char *read_open(int fd, size_t size, char error[MESH_ERROR_MAX])
-{
-    size_t done = 0;
-    ssize_t got = 1;
-    unsigned char *bytes = malloc(size + 1);
-    while (bytes && done < size && (got > 0 || (got < 0 && errno == EINTR))) {
-        got = read(fd, bytes + done, size - done);
-        done += got > 0 ? (size_t) got : 0;
-    }
-    if (!bytes)
-        snprintf(error, MESH_ERROR_MAX, "there is no memory for its %zu bytes", size);
-    else if (got < 0)
-        snprintf(error, MESH_ERROR_MAX, "%s", strerror(errno));
-    else if (done < size)
-        snprintf(error, MESH_ERROR_MAX, "byte %zu: the file became shorter while it was read",
-                 done);
-    else
-        bytes[size] = '\0';
-    if (bytes && done == size)
-        return bytes;
-    free(bytes);
-    return NULL;
-}
-
-/* O_NONBLOCK: a pipe is an error, and does not block. */
+/* Returns the bytes of a file, which the caller frees; or NULL, and the error. fopen() of a pipe
+ * would block. */
 static unsigned char *read_file(const char *path, size_t *size, char error[MESH_ERROR_MAX])
 {
-    struct stat about;
+    struct stat about = {0};
+    FILE *file = NULL;
     unsigned char *bytes = NULL;
     const char *why = NULL;
-    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-    if (fd < 0 || fstat(fd, &about) != 0)
+    char no_memory[64];
+    if (stat(path, &about) != 0)
         why = strerror(errno);
     else if (S_ISDIR(about.st_mode))
         why = "a folder, not a file";
     else if (!S_ISREG(about.st_mode))
         why = "no regular file: write what it gives into one first";
-    else if ((uintmax_t) about.st_size >= PTRDIFF_MAX)
-        why = "larger than memory can be";
-    else
-        bytes = read_open(fd, *size = (size_t) about.st_size, error);
-    if (why)
-        snprintf(error, MESH_ERROR_MAX, "%s", why);
-    if (fd >= 0)
-        close(fd);
-    return bytes;
+    else if (!(file = fopen(path, "rbe")))
+        why = strerror(errno);
+    else if (!(bytes = malloc((size_t) about.st_size + 1)))
+        why = no_memory;
+    else if (fread(bytes, 1, (size_t) about.st_size, file) < (size_t) about.st_size)
+        why = ferror(file) ? strerror(errno) : "the file became shorter while it was read";
+    *size = (size_t) about.st_size;
+    snprintf(no_memory, sizeof no_memory, "there is no memory for its %zu bytes", *size);
+    if (file)
+        fclose(file);
+    if (!why) {
+        bytes[*size] = '\0';
+        return bytes;
+    }
+    snprintf(error, MESH_ERROR_MAX, "%s", why);
+    free(bytes);
+    return NULL;
 }
 
 bool mesh_read(const char *path, enum mesh_faces faces, struct mesh *out,

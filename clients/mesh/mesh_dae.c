@@ -33,7 +33,7 @@ struct numbers {
 };
 
 struct dae {
-    struct mesh_build build;
+    struct mesh_source *source;
     struct owned_scene memory;             /* of the elements */
     struct xml_element *root, *ids[KINDS]; /* ids: tables */
     size_t bytes;                          /* read, with repetitions */
@@ -43,7 +43,7 @@ struct dae {
     size_t first, count;                /* their range in the mesh */
 };
 
-#define refuse(dae, element, ...) mesh_refuse((dae)->build.source, (element)->begin, __VA_ARGS__)
+#define refuse(dae, element, ...) mesh_refuse((dae)->source, (element)->begin, __VA_ARGS__)
 
 /* Returns the table of the ids of a kind of element; NULL: nothing refers to this kind. Each kind
  * has its own table, since files use the same id in elements of different kinds. Nodes come first,
@@ -61,7 +61,7 @@ static struct xml_element **ids_of(struct dae *dae, const char *kind)
 /* Makes the tree of elements, and the tables of their ids. */
 static bool parse(struct dae *dae)
 {
-    struct mesh_source *source = dae->build.source;
+    struct mesh_source *source = dae->source;
     struct xml_element *other;
     struct xml_error error;
     if (mesh_left(source) > BYTES_MAX)
@@ -151,7 +151,7 @@ static bool spend(struct dae *dae, const struct xml_element *element, const unsi
 /* Reads the text of an element: finite numbers. */
 static bool read_numbers(struct dae *dae, const struct xml_element *element, struct numbers *out)
 {
-    struct mesh_source *source = dae->build.source;
+    struct mesh_source *source = dae->source;
     const unsigned char *at = mesh_skip_spaces(element->text), *last = element->text_end, *end;
     char text[MESH_WORD_MAX];
     for (out->count = 0; at < last; at = mesh_skip_spaces(end)) {
@@ -197,7 +197,7 @@ static bool add_vertices(struct dae *dae, const struct xml_element *vertices,
                       "<accessor>: %zu positions from %zu on, of stride %zu, exceed %zu numbers",
                       count, offset, stride, numbers);
     dae->vertices = vertices;
-    dae->first = dae->build.mesh->vertex_count;
+    dae->first = dae->source->mesh.vertex_count;
     dae->count = count;
     for (size_t i = 0; i < count; i++) {
         const double *x = dae->numbers.number + offset + stride * i;
@@ -208,7 +208,7 @@ static bool add_vertices(struct dae *dae, const struct xml_element *vertices,
         }
         if (!isfinite(placed[0]) || !isfinite(placed[1]) || !isfinite(placed[2]))
             return refuse(dae, array, "position %zu is not finite after the transformations", i);
-        if (!mesh_add_vertex(&dae->build, placed))
+        if (!mesh_add_vertex(dae->source, placed))
             return false;
     }
     return true;
@@ -224,14 +224,14 @@ struct set {
 /* Adds the faces of a polygon. */
 static bool add_polygon(struct dae *dae, const struct set *set, const double *index, size_t count)
 {
-    if (!mesh_check_face(dae->build.source, set->p->begin, count))
+    if (!mesh_check_face(dae->source, set->p->begin, count))
         return false;
     for (size_t n = 0; n < count; n++) {
         const double next = index[set->stride * n + set->offset];
         if (!(next >= 0 && next < (double) dae->count && next == floor(next)))
             return refuse(dae, set->p, "index %g is no vertex: there are %zu, from 0 on", next,
                           dae->count);
-        if (!mesh_add_corner(&dae->build, n, (unsigned) (dae->first + (size_t) next)))
+        if (!mesh_add_corner(dae->source, n, (unsigned) (dae->first + (size_t) next)))
             return false;
     }
     return true;
@@ -403,32 +403,33 @@ static bool visit(struct dae *dae, struct xml_element *node, struct affine at, i
     return true;
 }
 
-static bool read_scene(struct dae *dae, struct mesh *out)
+static bool read_scene(struct dae *dae)
 {
     const struct xml_element *root = dae->root;
     const struct xml_element *unit = xml_child(xml_child(root, "asset"), "unit");
     const struct xml_element *instance =
         xml_child(xml_child(root, "scene"), "instance_visual_scene");
     const char *meter = unit ? xml_attribute(unit, "meter") : NULL;
+    double m = 1;
     if (!xml_is(root, "COLLADA"))
         return refuse(dae, root, "expected <COLLADA>: other formats in XML are not supported");
     if (meter) {
-        const unsigned char *end = mesh_number((const unsigned char *) meter, &out->unit);
-        if (!end || *end || !(out->unit > 0) || isinf(out->unit))
+        const unsigned char *end = mesh_number((const unsigned char *) meter, &m);
+        if (!end || *end || !(m > 0) || isinf(m))
             return refuse(dae, unit, "<unit>: its meter is not a finite number above 0");
+        dae->source->mesh.unit = m;
     }
     if (!instance)
         return refuse(dae, root, "<COLLADA> has no <scene> with an <instance_visual_scene>");
     struct xml_element *scene = refer(dae, instance, "url", "visual_scene");
-    const double m = meter ? out->unit : 1;
     return scene && visit(dae, scene, (struct affine){{{m}, {0, m}, {0, 0, m}}}, 0);
 }
 
-bool mesh_dae(struct mesh_source *source, struct mesh *out)
+bool mesh_dae(struct mesh_source *source)
 {
-    struct dae dae = {.build = {.source = source, .mesh = out}};
+    struct dae dae = {.source = source};
     source->text = true;
-    const bool good = parse(&dae) && read_scene(&dae, out);
+    const bool good = parse(&dae) && read_scene(&dae);
     for (int i = 0; i < KINDS; i++)
         HASH_CLEAR(hh, dae.ids[i]);
     free(dae.numbers.number);

@@ -1,11 +1,9 @@
 #include "mesh_intersect.h"
 
 #include "allocate.h"
-#include "clock.h"
 #include "fmb_batch.h"
 #include "progress.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,37 +35,12 @@ static const struct mesh *mesh_of(const struct mesh_query *query, int which)
 
 /* ---- Faces ---- */
 
-/* c1 x c0, divided by its length; 0 if that is 0. */
-static void unit_normal(const double c0[3], const double c1[3], double out[3])
+void mesh_face_body(const struct mesh *mesh, unsigned face, struct fmb_body *out)
 {
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = c1[j] * c0[k] - c1[k] * c0[j];
-    }
-    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-    for (int i = 0; i < 3; i++)
-        out[i] = length > 0 ? out[i] / length : 0;
-}
-
-/* As mesh_face_body(). */
-static bool make_face(const struct mesh *mesh, enum mesh_as as, unsigned face, struct fmb_body *out)
-{
-    double number[4][3]; /* the vertices; or the origin, then the components */
+    double vertex[3][3];
     for (int corner = 0; corner < 3; corner++)
-        memcpy(number[corner], mesh->vertex[mesh->face[face][corner]], sizeof number[corner]);
-    if (as == MESH_FACES)
-        return fmb_body_make_vertices(3, FMB_FACE, number[0], 9, out) == FMB_OK;
-    for (int axis = 0; axis < 3; axis++) {
-        number[1][axis] -= number[0][axis];
-        number[2][axis] -= number[0][axis];
-    }
-    unit_normal(number[1], number[2], number[3]);
-    return fmb_body_make(3, FMB_TETRAHEDRON, number[0], 12, out) == FMB_OK;
-}
-
-bool mesh_face_body(const struct mesh_query *query, int which, unsigned face, struct fmb_body *out)
-{
-    return make_face(mesh_of(query, which), query->as, face, out);
+        memcpy(vertex[corner], mesh->vertex[mesh->face[face][corner]], sizeof vertex[corner]);
+    fmb_body_make_vertices(3, FMB_FACE, vertex[0], 9, out);
 }
 
 /* ---- Trees ---- */
@@ -87,24 +60,11 @@ static void face_box(const void *context, unsigned index, double box[2][FMB_DIM_
     }
 }
 
-/* A face that is no body has an unbounded box, so that it becomes a candidate and is then refused.
- */
-static void tetrahedron_box(const void *context, unsigned index, double box[2][FMB_DIM_MAX])
-{
-    struct fmb_body body;
-    const bool good = make_face(context, MESH_TETRAHEDRA, index, &body);
-    for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
-        box[0][axis] = good ? body.box[0][axis] : -INFINITY;
-        box[1][axis] = good ? body.box[1][axis] : INFINITY;
-    }
-}
-
 /* Returns the memory of the tree, which the caller frees. */
 static void *build_tree(const struct mesh_query *query, int which, struct fmb_tree *out)
 {
     const struct mesh *mesh = mesh_of(query, which);
-    const struct fmb_boxes boxes = {3, query->as == MESH_FACES ? face_box : tetrahedron_box, mesh,
-                                    query->velocity[which]};
+    const struct fmb_boxes boxes = {3, face_box, mesh, query->velocity[which]};
     void *memory = allocate(1, fmb_tree_bytes(mesh->face_count));
     fmb_tree_build(&boxes, mesh->face_count, query->duration, memory, out);
     return memory;
@@ -118,13 +78,12 @@ static void prepare(struct mesh_search *search, size_t candidate, int which)
     const struct mesh_query *query = search->query;
     const size_t i = 2 * candidate + (size_t) which;
     struct placed_face *placed = &search->placed[i];
-    memset(&search->frame[i], 0, sizeof search->frame[i]); /* fmb_decide_batch() refuses zeros */
     placed->placement = (struct fmb_placement){.body = &placed->body};
     if (query->velocity[which])
         memcpy(placed->placement.velocity, query->velocity[which],
                sizeof placed->placement.velocity);
-    if (mesh_face_body(query, which, search->face[candidate][which], &placed->body))
-        fmb_prepare(&placed->placement, 0, 1, &search->frame[i]);
+    mesh_face_body(mesh_of(query, which), search->face[candidate][which], &placed->body);
+    fmb_prepare(&placed->placement, 0, 1, &search->frame[i]);
     search->pair[candidate][which] = (unsigned) i;
 }
 
@@ -141,7 +100,6 @@ static void add_pair(struct mesh_intersection *intersection, const unsigned face
 
 static void decide_block(struct mesh_search *search)
 {
-    search->intersection->candidates += search->count;
     for (size_t i = 0; i < search->count; i++)
         for (int which = 0; which < 2; which++)
             prepare(search, i, which);
@@ -210,12 +168,9 @@ enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_inter
     search->intersection = out;
     search->placed = allocate(FRAMES, sizeof *search->placed);
     search->frame = allocate(FRAMES, sizeof *search->frame);
-    const int64_t begin = clock_ns();
     for (int which = 0; which < 2; which++)
         memory[which] = build_tree(query, which, &search->tree[which]);
-    out->build_ns = clock_ns() - begin;
     decide_all(search);
-    out->query_ns = clock_ns() - begin - out->build_ns;
     const enum fmb_status status = search->status;
     for (int which = 0; which < 2; which++)
         free(memory[which]);

@@ -6,18 +6,8 @@
 #include "fmb.h"
 #include "mesh.h"
 
-/* How a face is represented as a body. */
-enum mesh_as {
-    /* The triangle of its vertices, exactly: no edge is rounded. */
-    MESH_FACES,
-    /* The article's tetrahedron with its origin in the first vertex: the edges c0 and c1 to the
-     * other two, rounded, and c2 = c1 x c0 divided by its length, or 0 if that length is 0. */
-    MESH_TETRAHEDRA
-};
-
 struct mesh_query {
     const struct mesh *a, *b;
-    enum mesh_as as;
     const double *velocity[2]; /* [3] of a and of b, finite; NULL: at rest */
     double duration;           /* of the window, seconds; finite, from 0 */
 };
@@ -33,19 +23,15 @@ struct mesh_intersection {
     size_t count, capacity;
     size_t overlapping, touching; /* of the pairs, by verdict */
     size_t faces[2];              /* faces of a and of b in at least one pair */
-    uint64_t candidates;          /* candidate pairs decided */
     bool moving;
-    int64_t build_ns, query_ns; /* time to build the trees, and the remaining time */
 };
 
-/* Makes the body of a face of a (which 0) or b (1), without its velocity. Returns false if an edge
- * or the normal is longer than the largest double. */
-bool mesh_face_body(const struct mesh_query *query, int which, unsigned face, struct fmb_body *out);
+/* Makes the body of a face: the triangle of its vertices, exactly. */
+void mesh_face_body(const struct mesh *mesh, unsigned face, struct fmb_body *out);
 
 /* In: meshes on which mesh_transform() succeeded. Returns FMB_OK and an intersection, which the
  * caller frees with mesh_intersection_free(). Progress is an approximate number of faces of a. On
- * error nothing needs to be freed: FMB_NOT_FINITE if the normal of a face overflows (TETRAHEDRA).
- * Exits with status 1 if memory is exhausted. No shared state. */
+ * error nothing needs to be freed. Exits with status 1 if memory is exhausted. No shared state. */
 enum fmb_status mesh_intersect(const struct mesh_query *query, struct mesh_intersection *out);
 void mesh_intersection_free(struct mesh_intersection *intersection);
 

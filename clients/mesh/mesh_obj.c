@@ -8,36 +8,22 @@
 #include <math.h>
 #include <string.h>
 
-enum what { VERTEX, FACE, OBJECT, SKIPPED, SURFACE };
-
-/* The most frequent statements come first. The first DETECTED identify a file without an extension.
- */
-enum { DETECTED = 10 };
-static const struct {
-    const char *word;
-    enum what what;
-} statements[] = {
-    {"v", VERTEX},          {"f", FACE},           {"vn", SKIPPED},       {"vt", SKIPPED},
-    {"o", OBJECT},          {"g", SKIPPED},        {"s", SKIPPED},        {"usemtl", SKIPPED},
-    {"mtllib", SKIPPED},    {"vp", SKIPPED},       {"l", SKIPPED},        {"p", SKIPPED},
-    {"mg", SKIPPED},        {"maplib", SKIPPED},   {"usemap", SKIPPED},   {"bevel", SKIPPED},
-    {"lod", SKIPPED},       {"c_interp", SKIPPED}, {"d_interp", SKIPPED}, {"shadow_obj", SKIPPED},
-    {"trace_obj", SKIPPED}, {"ctech", SKIPPED},    {"stech", SKIPPED},    {"cstype", SKIPPED},
-    {"deg", SKIPPED},       {"bmat", SKIPPED},     {"step", SKIPPED},     {"parm", SKIPPED},
-    {"trim", SKIPPED},      {"hole", SKIPPED},     {"scrv", SKIPPED},     {"sp", SKIPPED},
-    {"end", SKIPPED},       {"con", SKIPPED},      {"fo", FACE},          {"surf", SURFACE},
-    {"curv", SURFACE},      {"curv2", SURFACE},    {"bzp", SURFACE},      {"bsp", SURFACE},
-    {"cdc", SURFACE},       {"cdp", SURFACE},      {"res", SURFACE},      {"call", SURFACE},
-    {"csh", SURFACE},
-};
-enum { STATEMENTS = sizeof statements / sizeof *statements };
+/* Statements that define no surface, and those that define one other than f. The first DETECTED of
+ * the former identify a file without an extension, as do v and f. */
+enum { DETECTED = 8 };
+static const char *const skipped[] = {
+    "vn",       "vt",         "o",         "g",      "s",      "usemtl", "mtllib", "vp",
+    "l",        "p",          "mg",        "maplib", "usemap", "bevel",  "lod",    "c_interp",
+    "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech",  "cstype", "deg",    "bmat",
+    "step",     "parm",       "trim",      "hole",   "scrv",   "sp",     "end",    "con"};
+static const char *const surfaces[] = {"surf", "curv", "curv2", "bzp",  "bsp",
+                                       "cdc",  "cdp",  "res",   "call", "csh"};
 
 /* Exceeds any valid index. */
 #define INDEX_MAX INT64_C(10000000000)
 
 struct obj {
-    struct mesh_build build;
-    size_t object_capacity;
+    struct mesh_source *source;
     /* The largest index used, from 1, and its position: the vertex may follow its first use. */
     uint64_t largest;
     const unsigned char *largest_at;
@@ -82,23 +68,27 @@ static void skip_statement(struct mesh_source *source)
             source->at++;
 }
 
-/* Returns the index of the statement, and the length of its word; -1: there is none. */
-static int find_statement(const struct mesh_source *source, const unsigned char *at, size_t *length)
+/* Whether this word is at this position. */
+static bool is_word(const struct mesh_source *source, const unsigned char *at, const char *word)
 {
-    for (int i = 0; i < STATEMENTS; i++) {
-        *length = strlen(statements[i].word);
-        if (strncmp((const char *) at, statements[i].word, *length) == 0 &&
-            ends_word(source, at + *length))
-            return i;
-    }
-    return -1;
+    const size_t length = strlen(word);
+    return strncmp((const char *) at, word, length) == 0 && ends_word(source, at + length);
+}
+
+/* Whether one of the words is at this position. */
+static bool is_any(const struct mesh_source *source, const unsigned char *at,
+                   const char *const *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (is_word(source, at, words[i]))
+            return true;
+    return false;
 }
 
 bool mesh_is_obj_statement(const struct mesh_source *source, const unsigned char *at)
 {
-    size_t length;
-    const int statement = find_statement(source, at, &length);
-    return statement >= 0 && statement < DETECTED;
+    return is_word(source, at, "v") || is_word(source, at, "f") ||
+           is_any(source, at, skipped, DETECTED);
 }
 
 /* ---- Vertices -------------------------------------------------------------------------------- */
@@ -117,9 +107,8 @@ static bool read_number(struct mesh_source *source, size_t axis, double *out)
 
 /* Reads three coordinates, and skips what some programs add: a weight, a colour, both, or a colour
  * of four numbers. */
-static bool read_vertex(struct obj *obj)
+static bool read_vertex(struct mesh_source *source)
 {
-    struct mesh_source *source = obj->build.source;
     const unsigned char *begin = source->at;
     double position[3], ignored;
     size_t count = 0;
@@ -131,7 +120,7 @@ static bool read_vertex(struct obj *obj)
                            "a vertex of %zu numbers: it has 3, and 1 more for a weight, 3 "
                            "more for a colour",
                            count);
-    return mesh_add_vertex(&obj->build, position);
+    return mesh_add_vertex(source, position);
 }
 
 /* ---- Faces ----------------------------------------------------------------------------------- */
@@ -165,8 +154,8 @@ static const unsigned char *read_corner(const unsigned char *at, int64_t *out)
  * Whether the vertex exists is checked at the end. */
 static bool take_index(struct obj *obj, int64_t index, unsigned *out)
 {
-    struct mesh_source *source = obj->build.source;
-    const size_t count = obj->build.mesh->vertex_count;
+    struct mesh_source *source = obj->source;
+    const size_t count = source->mesh.vertex_count;
     char text[MESH_WORD_MAX];
     if (index == 0)
         return mesh_refuse(source, source->at, "index 0 is no vertex: they count from 1");
@@ -183,7 +172,7 @@ static bool take_index(struct obj *obj, int64_t index, unsigned *out)
 
 static bool read_face(struct obj *obj)
 {
-    struct mesh_source *source = obj->build.source;
+    struct mesh_source *source = obj->source;
     const unsigned char *begin = source->at;
     char text[MESH_WORD_MAX];
     size_t count = 0;
@@ -194,17 +183,17 @@ static bool read_face(struct obj *obj)
         if (!end || !ends_word(source, end))
             return mesh_refuse(source, source->at, "'%s' is no corner of a face",
                                mesh_word(source, source->at, text));
-        if (!take_index(obj, index, &next) || !mesh_add_corner(&obj->build, count, next))
+        if (!take_index(obj, index, &next) || !mesh_add_corner(source, count, next))
             return false;
         source->at = end;
     }
     return mesh_check_face(source, begin, count);
 }
 
-static void add_object(struct obj *obj)
+static void add_object(struct mesh_source *source)
 {
-    struct mesh *mesh = obj->build.mesh;
-    mesh->object = allocate_grow(mesh->object, &obj->object_capacity, mesh->object_count + 1,
+    struct mesh *mesh = &source->mesh;
+    mesh->object = allocate_grow(mesh->object, &source->object_capacity, mesh->object_count + 1,
                                  sizeof *mesh->object);
     mesh->object[mesh->object_count++] = mesh->face_count;
 }
@@ -213,31 +202,31 @@ static void add_object(struct obj *obj)
 
 static bool read_statement(struct obj *obj)
 {
-    struct mesh_source *source = obj->build.source;
+    struct mesh_source *source = obj->source;
     const unsigned char *begin = source->at;
+    const bool vertex = is_word(source, begin, "v");
     char text[MESH_WORD_MAX];
-    size_t length;
-    const int statement = find_statement(source, begin, &length);
-    if (statement < 0)
-        return mesh_refuse(source, begin, "'%s' is no statement of OBJ",
-                           mesh_word(source, begin, text));
-    const enum what what = statements[statement].what;
-    if (what == SURFACE)
+    if (vertex || is_word(source, begin, "f") || is_word(source, begin, "fo")) {
+        while (!ends_word(source, source->at))
+            source->at++;
+        return vertex ? read_vertex(source) : read_face(obj);
+    }
+    if (is_any(source, begin, surfaces, sizeof surfaces / sizeof *surfaces))
         return mesh_refuse(source, begin,
                            "%s defines what is no triangle: make triangles of it first",
                            mesh_word(source, begin, text));
-    source->at += length;
-    if (what == VERTEX || what == FACE)
-        return what == VERTEX ? read_vertex(obj) : read_face(obj);
-    if (what == OBJECT)
-        add_object(obj);
+    if (!is_any(source, begin, skipped, sizeof skipped / sizeof *skipped))
+        return mesh_refuse(source, begin, "'%s' is no statement of OBJ",
+                           mesh_word(source, begin, text));
+    if (is_word(source, begin, "o"))
+        add_object(source);
     skip_statement(source);
     return true;
 }
 
 static bool read_statements(struct obj *obj)
 {
-    struct mesh_source *source = obj->build.source;
+    struct mesh_source *source = obj->source;
     while ((source->at = mesh_skip_spaces(skip(source->at))) < source->end) {
         if (*source->at != '#' && !read_statement(obj))
             return false;
@@ -247,16 +236,15 @@ static bool read_statements(struct obj *obj)
     return true;
 }
 
-bool mesh_obj(struct mesh_source *source, struct mesh *out)
+bool mesh_obj(struct mesh_source *source)
 {
-    struct obj obj = {.build = {.source = source, .mesh = out}};
+    struct obj obj = {.source = source};
     char text[MESH_WORD_MAX];
     source->text = true;
     if (!read_statements(&obj))
         return false;
-    if (obj.largest > out->vertex_count)
-        return mesh_refuse(source, obj.largest_at,
-                           "index %s is no vertex: there are %zu, counted from 1",
-                           mesh_word(source, obj.largest_at, text), out->vertex_count);
-    return true;
+    return obj.largest <= source->mesh.vertex_count ||
+           mesh_refuse(source, obj.largest_at,
+                       "index %s is no vertex: there are %zu, counted from 1",
+                       mesh_word(source, obj.largest_at, text), source->mesh.vertex_count);
 }

@@ -28,8 +28,8 @@ struct picture {
 static void add_face(struct picture *picture, int which, unsigned face)
 {
     struct fmb_body body;
-    if (mesh_face_body(picture->query, which, face, &body))
-        picture->frame[picture->frames++] = body.one;
+    mesh_face_body(which ? picture->query->b : picture->query->a, face, &body);
+    picture->frame[picture->frames++] = body.one;
     picture->body[which][face] = picture->bodies;
 }
 

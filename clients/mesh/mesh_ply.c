@@ -43,7 +43,6 @@ struct element {
 
 struct ply {
     struct mesh_source *source;
-    struct mesh_build build;
     enum format format;
     bool has_format;
     size_t element_count, property_count, vertex_count;
@@ -333,7 +332,7 @@ static bool read_list(struct ply *ply, const struct property *property)
             return mesh_refuse(ply->source, ply->value_at,
                                "index %.10g is no vertex: there are %zu, counted from 0", index,
                                ply->vertex_count);
-        if (!mesh_add_corner(&ply->build, i, (unsigned) index))
+        if (!mesh_add_corner(ply->source, i, (unsigned) index))
             return false;
     }
     return true;
@@ -366,7 +365,7 @@ static bool read_record(struct ply *ply, const struct element *element)
     for (size_t i = 0; i < element->property_count; i++)
         if (!read_property(ply, &ply->property[element->first + i]))
             return false;
-    if (element->kind == VERTICES && !mesh_add_vertex(&ply->build, ply->position))
+    if (element->kind == VERTICES && !mesh_add_vertex(source, ply->position))
         return false;
     mesh_report_progress(source);
     if (!source->text)
@@ -401,9 +400,9 @@ static bool read_end(struct mesh_source *source)
                         : mesh_refuse(source, source->at, "%zu bytes %s", mesh_left(source), wrong);
 }
 
-bool mesh_ply(struct mesh_source *source, struct mesh *out)
+bool mesh_ply(struct mesh_source *source)
 {
-    struct ply ply = {.source = source, .build = {.source = source, .mesh = out}};
+    struct ply ply = {.source = source};
     if (!read_header(&ply))
         return false;
     for (size_t i = 0; i < ply.element_count; i++)

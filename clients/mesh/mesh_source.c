@@ -76,7 +76,7 @@ const unsigned char *mesh_number(const unsigned char *at, double *value)
     return first + 1;
 }
 
-/* ---- A mesh under construction --------------------------------------------------------------- */
+/* ---- Vertices and faces ---------------------------------------------------------------------- */
 
 static bool has_count(struct mesh_source *source, size_t count, const char *what)
 {
@@ -84,34 +84,35 @@ static bool has_count(struct mesh_source *source, size_t count, const char *what
            mesh_refuse(source, source->at, "more than %u %s", MESH_COUNT_MAX, what);
 }
 
-bool mesh_add_vertex(struct mesh_build *build, const double position[3])
+bool mesh_add_vertex(struct mesh_source *source, const double position[3])
 {
-    struct mesh *mesh = build->mesh;
-    if (!has_count(build->source, mesh->vertex_count, "vertices"))
+    struct mesh *mesh = &source->mesh;
+    if (!has_count(source, mesh->vertex_count, "vertices"))
         return false;
-    mesh->vertex = allocate_grow(mesh->vertex, &build->vertex_capacity, mesh->vertex_count + 1,
+    mesh->vertex = allocate_grow(mesh->vertex, &source->vertex_capacity, mesh->vertex_count + 1,
                                  sizeof *mesh->vertex);
     memcpy(mesh->vertex[mesh->vertex_count++], position, sizeof *mesh->vertex);
     return true;
 }
 
-bool mesh_add_face(struct mesh_build *build, const unsigned corner[3])
+bool mesh_add_face(struct mesh_source *source, const unsigned corner[3])
 {
-    struct mesh *mesh = build->mesh;
-    if (!has_count(build->source, mesh->face_count, "faces"))
+    struct mesh *mesh = &source->mesh;
+    if (!has_count(source, mesh->face_count, "faces"))
         return false;
     mesh->face =
-        allocate_grow(mesh->face, &build->face_capacity, mesh->face_count + 1, sizeof *mesh->face);
+        allocate_grow(mesh->face, &source->face_capacity, mesh->face_count + 1, sizeof *mesh->face);
     memcpy(mesh->face[mesh->face_count++], corner, sizeof *mesh->face);
     return true;
 }
 
-bool mesh_add_corner(struct mesh_build *build, size_t n, unsigned vertex)
+bool mesh_add_corner(struct mesh_source *source, size_t n, unsigned vertex)
 {
+    unsigned *corner = source->corner;
     if (n >= 3)
-        build->corner[1] = build->corner[2];
-    build->corner[n < 3 ? n : 2] = vertex;
-    return n < 2 || mesh_add_face(build, build->corner);
+        corner[1] = corner[2];
+    corner[n < 3 ? n : 2] = vertex;
+    return n < 2 || mesh_add_face(source, corner);
 }
 
 bool mesh_check_face(struct mesh_source *source, const unsigned char *where, size_t count)

@@ -12,7 +12,11 @@ struct mesh_source {
     const unsigned char *begin, *end; /* *end is readable, and 0 */
     const unsigned char *at;          /* position of the parser */
     enum mesh_faces faces;
-    char *error; /* capacity: MESH_ERROR_MAX */
+    /* What was read. Arrays grow with the elements that are read. */
+    struct mesh mesh;
+    size_t vertex_capacity, face_capacity, object_capacity;
+    unsigned corner[3]; /* of mesh_add_corner() */
+    char *error;        /* capacity: MESH_ERROR_MAX */
     /* How errors name a place: in text by its line, else by its byte and the element that contains
      * it. within: kind of that element, such as "face"; NULL: none. index: of that element. */
     bool text;
@@ -23,21 +27,13 @@ struct mesh_source {
 /* Largest number of vertices or faces; not an index. */
 #define MESH_COUNT_MAX (UINT32_MAX - 1u)
 
-/* A mesh under construction. Its arrays grow with the elements that are read. */
-struct mesh_build {
-    struct mesh_source *source;
-    struct mesh *mesh;
-    size_t vertex_capacity, face_capacity;
-    unsigned corner[3]; /* of mesh_add_corner() */
-};
-
 /* Append an element. Return false, with the error, if there are too many. Exit with status 1 if
  * memory is exhausted. */
-bool mesh_add_vertex(struct mesh_build *build, const double position[3]);
-bool mesh_add_face(struct mesh_build *build, const unsigned corner[3]);
+bool mesh_add_vertex(struct mesh_source *source, const double position[3]);
+bool mesh_add_face(struct mesh_source *source, const unsigned corner[3]);
 
 /* Adds corner n of a polygon, counted from 0: from the third one on, a triangle of a fan. */
-bool mesh_add_corner(struct mesh_build *build, size_t n, unsigned vertex);
+bool mesh_add_corner(struct mesh_source *source, size_t n, unsigned vertex);
 
 /* Returns false, with the error, if a face of so many vertices is not read. where: of the error. */
 bool mesh_check_face(struct mesh_source *source, const unsigned char *where, size_t count);
@@ -101,13 +97,13 @@ static inline bool mesh_ends_word(const struct mesh_source *source, const unsign
 
 /* ---- Formats ---- */
 
-/* Each parser reads from the beginning of the source to its end into an empty mesh. Returns true;
- * or false, with the error in the source and a partial mesh that the caller frees. */
-bool mesh_ply(struct mesh_source *source, struct mesh *out);
-bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out);
-bool mesh_stl_binary(struct mesh_source *source, struct mesh *out);
-bool mesh_obj(struct mesh_source *source, struct mesh *out);
-bool mesh_dae(struct mesh_source *source, struct mesh *out);
+/* Each parser reads from the beginning of the source to its end. Returns false, with the error, if
+ * the file is refused. */
+bool mesh_ply(struct mesh_source *source);
+bool mesh_stl_ascii(struct mesh_source *source);
+bool mesh_stl_binary(struct mesh_source *source);
+bool mesh_obj(struct mesh_source *source);
+bool mesh_dae(struct mesh_source *source);
 
 /* Whether the file has the size that its facet count requires as binary STL. */
 bool mesh_is_stl_binary(const struct mesh_source *source);

@@ -26,8 +26,8 @@ struct welded {
 };
 
 struct weld {
-    struct mesh_build *build; /* all vertices are added by weld_vertex() */
-    struct welded *vertex;    /* owned: hash table by coordinates; NULL: empty */
+    struct mesh_source *source; /* all vertices are added by weld_vertex() */
+    struct welded *vertex;      /* owned: hash table by coordinates; NULL: empty */
 };
 
 static bool weld_vertex(struct weld *weld, const double position[3], unsigned *index)
@@ -37,11 +37,11 @@ static bool weld_vertex(struct weld *weld, const double position[3], unsigned *i
     struct welded *welded;
     HASH_FIND(hh, weld->vertex, clean, sizeof clean, welded);
     if (!welded) {
-        if (!mesh_add_vertex(weld->build, clean))
+        if (!mesh_add_vertex(weld->source, clean))
             return false;
         welded = allocate(1, sizeof *welded);
         memcpy(welded->position, clean, sizeof clean);
-        welded->index = (unsigned) weld->build->mesh->vertex_count - 1;
+        welded->index = (unsigned) weld->source->mesh.vertex_count - 1;
         HASH_ADD(hh, weld->vertex, position, sizeof clean, welded);
     }
     *index = welded->index;
@@ -93,7 +93,7 @@ static bool read_numbers(struct mesh_source *source, bool finite, double out[3])
 
 static bool read_loop(struct weld *weld)
 {
-    struct mesh_source *source = weld->build->source;
+    struct mesh_source *source = weld->source;
     unsigned corner[3];
     for (int i = 0; i < 3; i++) {
         double position[3];
@@ -106,13 +106,13 @@ static bool read_loop(struct weld *weld)
     if (is_next(source, "vertex"))
         return mesh_refuse(source, source->at,
                            "a facet of more than 3 vertices: triangulate it first");
-    return mesh_add_face(weld->build, corner);
+    return mesh_add_face(source, corner);
 }
 
 /* The normal is ignored: some programs write NaN. */
 static bool read_facet(struct weld *weld)
 {
-    struct mesh_source *source = weld->build->source;
+    struct mesh_source *source = weld->source;
     double normal[3];
     return take(source, "facet") && take(source, "normal") && read_numbers(source, false, normal) &&
            take(source, "outer") && take(source, "loop") && read_loop(weld) &&
@@ -121,7 +121,7 @@ static bool read_facet(struct weld *weld)
 
 static bool read_solid(struct weld *weld)
 {
-    struct mesh_source *source = weld->build->source;
+    struct mesh_source *source = weld->source;
     if (!take(source, "solid"))
         return false;
     mesh_skip_line(source);
@@ -136,10 +136,9 @@ static bool read_solid(struct weld *weld)
     return true;
 }
 
-bool mesh_stl_ascii(struct mesh_source *source, struct mesh *out)
+bool mesh_stl_ascii(struct mesh_source *source)
 {
-    struct mesh_build build = {.source = source, .mesh = out};
-    struct weld weld = {.build = &build};
+    struct weld weld = {.source = source};
     bool good;
     source->text = true;
     do {
@@ -190,7 +189,7 @@ static bool refuse_size(struct mesh_source *source)
 
 static bool read_vertex(struct weld *weld, unsigned *index)
 {
-    struct mesh_source *source = weld->build->source;
+    struct mesh_source *source = weld->source;
     double position[3];
     for (int axis = 0; axis < 3; axis++) {
         position[axis] = mesh_float(word_at(source->at));
@@ -203,7 +202,7 @@ static bool read_vertex(struct weld *weld, unsigned *index)
 
 static bool read_facets(struct weld *weld)
 {
-    struct mesh_source *source = weld->build->source;
+    struct mesh_source *source = weld->source;
     source->at = source->begin + HEADER_BYTES;
     source->within = "face";
     for (; source->at < source->end; source->index++) {
@@ -213,7 +212,7 @@ static bool read_facets(struct weld *weld)
         for (int i = 0; i < 3; i++)
             if (!read_vertex(weld, &corner[i]))
                 return false;
-        if (!mesh_add_face(weld->build, corner))
+        if (!mesh_add_face(source, corner))
             return false;
         source->at = begin + FACET_BYTES;
         mesh_report_progress(source);
@@ -221,10 +220,9 @@ static bool read_facets(struct weld *weld)
     return true;
 }
 
-bool mesh_stl_binary(struct mesh_source *source, struct mesh *out)
+bool mesh_stl_binary(struct mesh_source *source)
 {
-    struct mesh_build build = {.source = source, .mesh = out};
-    struct weld weld = {.build = &build};
+    struct weld weld = {.source = source};
     if (!mesh_is_stl_binary(source))
         return refuse_size(source);
     const bool good = read_facets(&weld);

@@ -17,7 +17,6 @@ static void move(const struct mesh_step *step, const double turn[2], double at[3
 {
     switch (step->kind) {
     case MESH_ROTATE: rotate(turn, step->axis, at); break;
-    case MESH_MIRROR: at[step->axis] = -at[step->axis]; break;
     case MESH_SCALE:
         for (int axis = 0; axis < 3; axis++)
             at[axis] *= step->number[axis];

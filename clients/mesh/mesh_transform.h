@@ -6,11 +6,11 @@
 
 #include "mesh.h"
 
-enum mesh_step_kind { MESH_SCALE, MESH_ROTATE, MESH_TRANSLATE, MESH_MIRROR };
+enum mesh_step_kind { MESH_SCALE, MESH_ROTATE, MESH_TRANSLATE };
 
 struct mesh_step {
     enum mesh_step_kind kind;
-    int axis;         /* of ROTATE and MIRROR: 0 (x), 1 (y), 2 (z) */
+    int axis;         /* of ROTATE: 0 (x), 1 (y), 2 (z) */
     double number[3]; /* SCALE: factors; TRANSLATE: displacement; ROTATE: [0], degrees */
 };
 
@@ -22,7 +22,7 @@ struct mesh_transform {
 };
 
 /* Applies the steps in order. Rotations follow the right-hand rule; multiples of 90 degrees are
- * exact. Rotations, mirrors (x becomes -x) and scales are about the origin. Returns SIZE_MAX; or
+ * exact. Rotations and scales are about the origin. Returns SIZE_MAX; or
  * the index of the first vertex with a coordinate beyond half of the largest double, with which the
  * length of an edge might overflow. */
 size_t mesh_transform(const struct mesh_transform *transform, struct mesh *mesh);

@@ -51,7 +51,5 @@ if [ -z "$mesh" ]; then
     mesh=$folder/bumpy.ply scale=60
     "$build/mesh/make-mesh" --faces 70000 --format ply-ascii > "$mesh"
 fi
-for as in faces tetrahedra; do
-    row "mesh, as $as" 1 scenes "$fmb" mesh --as $as "$mesh" --scale $scale "$mesh" --scale $scale --mirror x --translate 50,-10,0
-    cat "$folder/out"
-done
+row mesh 1 scenes "$fmb" mesh "$mesh" --scale $scale "$mesh" --scale -$scale,$scale,$scale --translate 50,-10,0
+cat "$folder/out"

@@ -938,7 +938,7 @@ all_pairs() {
         "mesh @.obj @.obj" "mesh @.obj @.obj --html @/none" "log info @" "log info @.log" "log cut --output @/none @.log" \
         "log scene --event 99999 @.log" "log scene --event 1 @" "replay @" "replay @/none" "replay --golden @ @.log" \
         "replay --junit /dev/stderr @.log" "scene @" "scene --joints @ @" "record @/none" "record --@" "watch @" "log @" "@" \
-        "help @" "status --lcm-url @" "status --timeout @" "mesh --as @" "mesh --scale @"; do
+        "help @" "status --lcm-url @" "status --timeout @" "mesh --scale @"; do
         words=()
         for word in $arguments; do words+=("${word/@/$name}"); done
         "$FMB" "${words[@]}" > "$BATS_TEST_TMPDIR/said" 2>&1 < /dev/null || true

@@ -97,9 +97,6 @@ mesh:a.obj --rotate 90 b.obj
 mesh:a.obj --rotate z b.obj
 mesh:a.obj --rotate w,1 b.obj
 mesh:a.obj --rotate= b.obj
-mesh:a.obj --mirror xy b.obj
-mesh:a.obj --mirror= b.obj
-mesh:a.obj --as cubes b.obj
 mesh:a.obj --duration -1 b.obj
 mesh:a.obj --duration nan b.obj
 mesh:a.obj -x b.obj
