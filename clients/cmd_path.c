@@ -77,7 +77,6 @@ struct path_run {
     struct output *file;     /* of the proof; NULL: none */
     struct path_proof proof; /* if there is a file */
     double clearance;        /* to be proven; 0: none */
-    double *from;            /* owned, [joints of the tree]: values of the previous row */
     const double *at;        /* the same at the end of the stated part of an edge */
     size_t edges, count[FMB_ROBOT_UNDECIDED + 1];
     double least; /* proven of all edges */
@@ -87,8 +86,7 @@ struct path_run {
 /* What is known of an edge besides the answer. */
 struct edge {
     size_t number;
-    double time[2]; /* NAN: no column */
-    const char *label;
+    const struct joint_row *from, *to; /* the same row: a path of one */
 };
 
 static const struct fmb_placement *body_of(const struct path_run *run, size_t i)
@@ -193,10 +191,11 @@ static void write_json(const struct path_run *run, const struct edge *edge,
     const struct robot *tree = &run->run.robot->tree;
     struct json_writer json = json_object(stdout);
     json_integer(&json, "edge", (int64_t) edge->number);
-    if (!isnan(edge->time[0]))
-        json_number(&json, "time", edge->time[0] + answer->at[0] * (edge->time[1] - edge->time[0]));
-    if (*edge->label)
-        json_string(&json, "label", edge->label);
+    if (!isnan(edge->from->time))
+        json_number(&json, "time",
+                    edge->from->time + answer->at[0] * (edge->to->time - edge->from->time));
+    if (edge->from->label)
+        json_string(&json, "label", edge->from->label);
     json_string(&json, "verdict", verdicts[answer->verdict]);
     if (answer->verdict != FMB_ROBOT_FREE)
         json_numbers(&json, "at", answer->at, 2);
@@ -227,9 +226,9 @@ static void write_row(const struct path_run *run, const struct edge *edge,
            number_short(answer->closest, text[3]));
     if (answer->has_pair)
         write_names(run, answer->a, answer->b);
-    if (*edge->label) {
+    if (edge->from->label) {
         fputs("  from ", stdout);
-        escape_text(stdout, edge->label);
+        escape_text(stdout, edge->from->label);
     }
     putchar('\n');
 }
@@ -327,40 +326,39 @@ static void write_end(const struct path_run *run)
 
 /* ---- Rows ---- */
 
-/* Handles all edges of the table: checks them, or proves and writes them. */
-static bool take_rows(struct path_run *run, struct joint_table *table, bool prove)
+static bool set_edge(const struct path_run *run, const struct edge *edge)
 {
-    struct joints *joints = &run->run.joints;
-    const size_t size = run->run.robot->tree.joint_count * sizeof *run->from;
-    enum joint_row row = joint_table_next(table);
-    bool good = true;
-    for (size_t number = 1; good && row == JOINT_ROW; number++) {
-        char label[sizeof table->label];
-        struct edge edge = {number, {table->time, table->time}, label};
-        struct fmb_robot_edge answer;
-        strcpy(label, table->label);
-        memcpy(run->from, joints->value, size);
-        if (run->file && !prove)
-            path_proof_row(&run->proof, run->run.path, run->from);
-        row = joint_table_next(table);
-        if (row == JOINT_ROW_BAD || (row == JOINT_ROW_END && number > 1))
-            break;
-        if (row == JOINT_ROW)
-            edge.time[1] = table->time;
-        if (!prove) {
-            run->edges = number;
-            good = joints->refused || path_set_edge(run->run.path, run->from, joints->value) == 0;
-            if (!good)
-                robot_world_print(table->place, fmb_robot_path_why(run->run.path));
-            continue;
+    return path_set_edge(run->run.path, edge->from->value, edge->to->value) == 0;
+}
+
+/* Proves and writes all edges, once they have been checked. */
+static bool prove_rows(struct path_run *run, struct joint_table *table)
+{
+    run->edges = table->row_count > 1 ? table->row_count - 1 : 1;
+    struct edge edge = {.from = table->rows, .to = &table->rows[table->row_count > 1]};
+    const struct edge first = edge;
+    for (size_t i = 0; i < run->edges; i++, edge.from++, edge.to++)
+        if (!set_edge(run, &edge)) {
+            robot_run_print(joint_table_place(table, edge.to), fmb_robot_path_why(run->run.path));
+            return false;
         }
-        path_set_edge(run->run.path, run->from, joints->value);
+    robot_run_measure(&run->run);
+    robot_run_report(&run->run, table);
+    progress_begin("edges");
+    write_touches(run);
+    if (run->file)
+        path_proof_pairs(&run->proof, run->run.path);
+    edge = first;
+    for (size_t i = 0; i < run->edges && !ferror(stdout); i++, edge.from++, edge.to++) {
+        struct fmb_robot_edge answer;
+        edge.number = i + 1;
+        set_edge(run, &edge);
         while (!fmb_robot_path_step(run->run.path, &answer))
             ;
         write_edge(run, &edge, &answer);
-        good = !ferror(stdout);
     }
-    return good && row != JOINT_ROW_BAD;
+    progress_end();
+    return true;
 }
 
 /* Compares the robot and the world of a proof. */
@@ -386,7 +384,7 @@ static bool prove_table(struct path_run *run)
     struct joint_table table;
     struct joints *joints = &run->run.joints;
     if (fmb_robot_path_begin(run->run.scene, run->clearance, &run->run.path) != 0) {
-        robot_world_print("", fmb_robot_path_why(run->run.path));
+        robot_run_print("", fmb_robot_path_why(run->run.path));
         return false;
     }
     if (run->check)
@@ -398,21 +396,13 @@ static bool prove_table(struct path_run *run)
         output_complain(run->output.path, ENOMEM);
         return false;
     }
+    bool good = joint_table_read(run->options->table, joints, &table) && joints_check(joints);
     if (run->file)
         path_proof_bodies(&run->proof, run->run.path);
-    bool good = joint_table_open(run->options->table, joints, &table) &&
-                take_rows(run, &table, false) && joints_check(joints);
-    if (good) {
-        robot_run_measure(&run->run);
-        robot_run_report(&run->run, &table);
-        progress_begin("edges");
-        write_touches(run);
-        if (run->file)
-            path_proof_pairs(&run->proof, run->run.path);
-        good = joint_table_rewind(&table) && take_rows(run, &table, true);
-        progress_end();
-    }
-    joint_table_close(&table);
+    for (size_t i = 0; run->file && i < table.row_count; i++)
+        path_proof_row(&run->proof, run->run.path, table.rows[i].value);
+    good = good && prove_rows(run, &table);
+    joint_table_clear(&table);
     if (run->file && !path_proof_end(&run->proof)) {
         complain("%s: the proof could not be written", run->output.path);
         good = false;
@@ -427,14 +417,11 @@ static int prove_file(struct path_run *run)
 {
     bool good = robot_run_begin(run->options, run->robot_file, &run->run);
     if (good) {
-        const size_t joints = run->run.robot->tree.joint_count;
-        run->from = allocate(joints, sizeof *run->from);
         if (run->clearance < 0)
             run->clearance = run->run.scene->owner.scene.margin;
         good = prove_table(run);
     }
     robot_run_end(&run->run);
-    free(run->from);
     free(run->first);
     good = output_flush() && good;
     return !good                                                            ? ARGS_USAGE

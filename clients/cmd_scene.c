@@ -43,36 +43,6 @@ static const char usage[] =
     "Exit codes: 0 printed; 2 wrong usage, or a file that cannot be read or is not\n"
     "valid: no scene is printed.\n";
 
-/* Places and prints the scenes of all rows; if print is false, only checks them. */
-static bool print_rows(struct robot_run *run, struct joint_table *table, bool print)
-{
-    struct fmb_scene *out = &run->scene->owner.scene;
-    const double duration = out->duration;
-    enum joint_row row = joint_table_next(table);
-    const double begin = table->time;
-    bool good = true;
-    while (good && row == JOINT_ROW) {
-        const double time = table->time;
-        const bool first = table->rows == 1;
-        char label[sizeof table->label];
-        strcpy(label, table->label);
-        good = run->joints.refused ||
-               robot_run_place(run, table->has_time ? time - begin : 0, table->place);
-        if (first && !print)
-            robot_run_measure(run);
-        row = joint_table_next(table);
-        out->label = *label ? label : NULL;
-        if (table->has_time)
-            out->duration = row == JOINT_ROW ? table->time - time : 0;
-        if (print)
-            scene_json_write(stdout, &run->scene->owner);
-        out->label = NULL;
-        good = good && !ferror(stdout);
-    }
-    out->duration = duration;
-    return good && row != JOINT_ROW_BAD;
-}
-
 /* Refuses a table with times if a body of the world has an end: the end is stated for the window of
  * the world, not for the windows of the table. */
 static bool check_ends(const struct robot_run *run, const struct joint_table *table)
@@ -87,24 +57,50 @@ static bool check_ends(const struct robot_run *run, const struct joint_table *ta
     return true;
 }
 
+static bool place_row(struct robot_run *run, struct joint_table *table, size_t i)
+{
+    const struct joint_row *row = &table->rows[i];
+    return robot_run_place(run, row->value, table->has_time ? row->time - table->rows[0].time : 0,
+                           joint_table_place(table, row));
+}
+
+/* Prints the scenes of all rows, once all of them have been placed without an error. */
+static bool print_rows(struct robot_run *run, struct joint_table *table)
+{
+    struct fmb_scene *out = &run->scene->owner.scene;
+    for (size_t i = 0; i < table->row_count; i++) {
+        if (!place_row(run, table, i))
+            return false;
+        if (i == 0)
+            robot_run_measure(run);
+    }
+    robot_run_report(run, table);
+    for (size_t i = 0; i < table->row_count && !ferror(stdout); i++) {
+        const struct joint_row *row = &table->rows[i];
+        place_row(run, table, i);
+        out->label = row->label;
+        if (table->has_time)
+            out->duration = i + 1 < table->row_count ? row[1].time - row->time : 0;
+        scene_json_write(stdout, &run->scene->owner);
+    }
+    return true;
+}
+
 static bool print_table(struct robot_run *run)
 {
     struct joint_table table;
-    bool good = joint_table_open(run->options->table, &run->joints, &table) &&
-                check_ends(run, &table) && print_rows(run, &table, false) &&
-                joints_check(&run->joints);
-    if (good) {
-        robot_run_report(run, &table);
-        good = joint_table_rewind(&table) && print_rows(run, &table, true);
-    }
-    joint_table_close(&table);
+    const bool good = joint_table_read(run->options->table, &run->joints, &table) &&
+                      check_ends(run, &table) && joints_check(&run->joints) &&
+                      print_rows(run, &table);
+    joint_table_clear(&table);
     return good;
 }
 
 static bool print_pose(struct robot_run *run)
 {
-    joints_follow(&run->joints, run->robot->tree.path, 0);
-    if (!joints_check(&run->joints) || !robot_run_place(run, 0, run->robot->tree.path))
+    const char *path = run->robot->tree.path;
+    joints_follow(&run->joints, path, 0);
+    if (!joints_check(&run->joints) || !robot_run_place(run, run->joints.value, 0, path))
         return false;
     robot_run_measure(run);
     robot_run_report(run, NULL);

@@ -13,7 +13,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Whether a joint that moves is neither given nor a mimic joint. */
 static bool needs_value(const struct joints *joints, size_t j)
@@ -230,22 +229,28 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line)
 
 /* ---- Lines of CSV ---- */
 
-enum { TEXT_MAX = 1 << 20 };
+enum { LINE_BYTES_MAX = 1 << 20 };
 
 /* Columns that are not of joints. */
 #define COLUMN_IGNORED (UINT32_MAX - 3)
 #define COLUMN_TIME (UINT32_MAX - 2)
 #define COLUMN_LABEL (UINT32_MAX - 1)
 
-/* Reports an error of the current line. */
-__attribute__((format(printf, 2, 3))) static enum joint_row refuse(const struct joint_table *table,
-                                                                   const char *format, ...)
+static const char *set_place(struct joint_table *table, unsigned long line)
+{
+    snprintf(table->place, COMPLAIN_PLACE_MAX, "%s: line %lu", table->path, line);
+    return table->place;
+}
+
+/* Reports an error of the current line. Returns false. */
+__attribute__((format(printf, 2, 3))) static bool refuse(struct joint_table *table,
+                                                         const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    complain_at(table->place, format, list);
+    complain_at(set_place(table, table->line), format, list);
     va_end(list);
-    return JOINT_ROW_BAD;
+    return false;
 }
 
 /* Splits the line into fields without the spaces around them, in place, and stores pointers to at
@@ -276,25 +281,26 @@ static size_t split(char *at, char **field, size_t capacity)
 }
 
 /* Reads the next line that is not blank, and divides it into fields: those of the columns, once
- * these are known. */
-static enum joint_row read_line(struct joint_table *table, size_t *found)
+ * these are known. Out: *found: their number; 0: the file has ended. Returns false after an error.
+ */
+static bool read_line(struct joint_table *table, size_t *found)
 {
     static const char mark[] = "\xef\xbb\xbf"; /* UTF-8 byte order mark */
     char *text;
+    *found = 0;
     do {
+        table->line++;
+        const ssize_t size = getline(&table->text, &table->text_capacity, table->file);
         text = table->text;
-        snprintf(table->place, COMPLAIN_PLACE_MAX, "%s: line %lu", table->path, ++table->line);
-        const off_t begin = ftello(table->file);
-        if (!fgets(text, TEXT_MAX, table->file))
-            return ferror(table->file) ? refuse(table, "%s", strerror(errno)) : JOINT_ROW_END;
-        char *end = strchr(text, '\n');
-        const bool last = !end && feof(table->file);
-        if (!end && (!last || ftello(table->file) - begin != (off_t) strlen(text)))
+        if (size < 0)
+            return !ferror(table->file) || refuse(table, "%s", strerror(errno));
+        if ((size_t) size != strlen(text) || size >= LINE_BYTES_MAX)
             return refuse(table,
                           "has a zero byte (save the table as UTF-8), or more than %d bytes (give "
                           "fewer columns)",
-                          TEXT_MAX - 1);
-        end = end ? end : text + strlen(text);
+                          LINE_BYTES_MAX - 1);
+        char *end = text + size;
+        end -= end > text && end[-1] == '\n';
         end -= end > text && end[-1] == '\r';
         *end = '\0';
         if (strchr(text, '\r'))
@@ -310,7 +316,7 @@ static enum joint_row read_line(struct joint_table *table, size_t *found)
         table->columns = most;
     }
     *found = split(text, table->field, table->columns);
-    return *found != SIZE_MAX ? JOINT_ROW : refuse(table, "a quote is misplaced or missing");
+    return *found != SIZE_MAX || refuse(table, "a quote is misplaced or missing");
 }
 
 /* ---- The table ---- */
@@ -324,7 +330,7 @@ static unsigned take_column(struct joint_table *table, size_t i)
                                                          : UINT32_MAX;
     const struct robot_joint *joint = robot_find_joint(table->joints->robot, name);
     if (column == UINT32_MAX && joint && joint->type != ROBOT_FIXED)
-        return take_joint(table->joints, name, table->place);
+        return take_joint(table->joints, name, set_place(table, table->line));
     if (column == UINT32_MAX) {
         table->fixed += joint != NULL;
         if (!joint && table->unknown++ == 0)
@@ -342,11 +348,10 @@ static unsigned take_column(struct joint_table *table, size_t i)
 
 static bool read_columns(struct joint_table *table)
 {
-    const enum joint_row outcome = read_line(table, &table->columns);
-    bool good = outcome == JOINT_ROW;
-    if (outcome == JOINT_ROW_END)
+    bool good = read_line(table, &table->columns);
+    if (good && table->columns == 0)
         complain("%s: expected a line of joint names, found none", table->path);
-    if (!good)
+    if (!good || table->columns == 0)
         return false;
     for (size_t i = 0; i < table->columns; i++)
         good = (table->column[i] = take_column(table, i)) != UINT32_MAX && good;
@@ -360,93 +365,109 @@ static bool read_columns(struct joint_table *table)
     return good;
 }
 
-bool joint_table_open(const char *path, struct joints *joints, struct joint_table *out)
+static bool take_time(struct joint_table *table, const char *text, double before, double *time)
 {
-    struct stat about;
-    *out = (struct joint_table){.path = path,
-                                .joints = joints,
-                                .file = fopen(path, "r"),
-                                .time = NAN,
-                                .text = allocate_unset(TEXT_MAX),
-                                .before = allocate(joints->robot->joint_count, sizeof(double)),
-                                .place = allocate(COMPLAIN_PLACE_MAX, 1)};
-    const bool is_stdin = strcmp(path, "-") == 0;
-    if (!is_stdin && (!out->file || fstat(fileno(out->file), &about) != 0))
-        complain("%s: %s", path, strerror(errno));
-    else if (is_stdin || !S_ISREG(about.st_mode))
-        complain("%s: not a regular file, which is needed because it is read twice: save it to one",
-                 path);
-    else
-        return read_columns(out);
-    return false;
+    char number[NUMBER_TEXT_MAX];
+    if (!robot_numbers(text, 1, time))
+        return refuse(table, "column 'time': expected a finite number, found '%.64s'", text);
+    return (!(*time < before) && !(*time - before > DBL_MAX)) ||
+           refuse(table, "column 'time': %s the previous row, %s",
+                  *time < before ? "earlier than in" : "more than doubles hold after",
+                  number_exact(before, number));
 }
 
-bool joint_table_rewind(struct joint_table *table)
+/* Sets the label: the text of its column, or "", and the time. */
+static bool set_label(struct joint_table *table, const char *text, struct joint_row *row)
+{
+    char time[NUMBER_TEXT_MAX], label[QUERY_NAME_MAX + 1];
+    const bool both = table->has_time && *text;
+    const size_t size = (size_t) snprintf(
+        label, sizeof label, "%s%s%s%s%s", text, both ? " (" : "", table->has_time ? "t = " : "",
+        table->has_time ? number_exact(row->time, time) : "", both ? ")" : "");
+    row->label = scene_text(&table->memory, label);
+    return (size <= QUERY_NAME_MAX && utf8_is_text(label)) ||
+           refuse(table,
+                  "the label, time included, has more than %d bytes, or is not UTF-8 without "
+                  "control characters",
+                  (int) QUERY_NAME_MAX);
+}
+
+/* Keeps the values of a row, and records the largest step of a joint. */
+static void keep_values(struct joint_table *table, struct joint_row *row)
+{
+    const size_t count = table->joints->robot->joint_count;
+    double *value = scene_alloc(&table->memory, count, sizeof *value);
+    if (count > 0)
+        memcpy(value, table->joints->value, count * sizeof *value);
+    for (size_t j = 0; j < count && table->row_count > 0; j++) {
+        const double by = fabs(value[j] - row[-1].value[j]);
+        if (by > table->step.by)
+            table->step = (struct joint_report){value[j], by, j, table->path, table->line};
+    }
+    row->value = value;
+}
+
+/* Adds a row of this number of fields. */
+static bool add_row(struct joint_table *table, size_t found)
+{
+    const char *label = "";
+    bool good = true;
+    if (found != table->columns)
+        return refuse(table, "%zu columns, but the first line has %zu", found, table->columns);
+    table->rows =
+        allocate_grow(table->rows, &table->row_capacity, table->row_count + 1, sizeof *table->rows);
+    struct joint_row *row = &table->rows[table->row_count];
+    *row = (struct joint_row){.line = table->line, .time = NAN};
+    for (size_t i = 0; good && i < found; i++) {
+        const unsigned column = table->column[i];
+        if (column == COLUMN_LABEL)
+            label = table->field[i];
+        else if (column == COLUMN_TIME)
+            good = take_time(table, table->field[i], table->row_count > 0 ? row[-1].time : NAN,
+                             &row->time);
+        else if (column != COLUMN_IGNORED)
+            good = set_value(table->joints, column, table->field[i], table->path, table->line,
+                             set_place(table, table->line));
+    }
+    if (!good)
+        return false;
+    joints_follow(table->joints, table->path, table->line);
+    keep_values(table, row);
+    table->row_count++;
+    return set_label(table, label, row);
+}
+
+bool joint_table_read(const char *path, struct joints *joints, struct joint_table *out)
 {
     size_t found;
-    rewind(table->file);
-    table->line = 0;
-    table->rows = 0;
-    table->time = NAN;
-    return read_line(table, &found) == JOINT_ROW;
+    *out = (struct joint_table){.path = path,
+                                .joints = joints,
+                                .file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r"),
+                                .place = allocate(COMPLAIN_PLACE_MAX, 1)};
+    if (!out->file)
+        complain("%s: %s", path, strerror(errno));
+    bool good = out->file && read_columns(out);
+    while (good && (good = read_line(out, &found)) && found > 0)
+        good = add_row(out, found);
+    return good &&
+           (out->row_count > 0 || refuse(out, "expected a row of joint values, found none"));
 }
 
-void joint_table_close(struct joint_table *table)
+void joint_table_clear(struct joint_table *table)
 {
-    if (table->file)
+    if (table->file && table->file != stdin)
         fclose(table->file);
+    free(table->rows);
     free(table->text);
     free(table->place);
     free(table->field);
     free(table->column);
-    free(table->before);
+    scene_clear(&table->memory);
 }
 
-static enum joint_row take_time(struct joint_table *table, const char *text)
+const char *joint_table_place(struct joint_table *table, const struct joint_row *row)
 {
-    char before[NUMBER_TEXT_MAX];
-    double time;
-    if (!robot_numbers(text, 1, &time))
-        return refuse(table, "column 'time': expected a finite number, found '%.64s'", text);
-    if (time < table->time || time - table->time > DBL_MAX)
-        return refuse(table, "column 'time': %s the previous row, %s",
-                      time < table->time ? "earlier than in" : "more than doubles hold after",
-                      number_exact(table->time, before));
-    table->time = time;
-    return JOINT_ROW;
-}
-
-/* Sets the label: the text of its column, or NULL, and the time. */
-static enum joint_row set_label(struct joint_table *table, const char *text)
-{
-    char time[NUMBER_TEXT_MAX], *label = table->label;
-    size_t size = text ? strlen(text) : 0;
-    if (size <= QUERY_NAME_MAX && table->has_time)
-        size = (size_t) snprintf(label, sizeof table->label, size > 0 ? "%s (t = %s)" : "%st = %s",
-                                 text ? text : "", number_exact(table->time, time));
-    else if (size <= QUERY_NAME_MAX)
-        strcpy(label, text ? text : "");
-    return size <= QUERY_NAME_MAX && utf8_is_text(label)
-               ? JOINT_ROW
-               : refuse(table,
-                        "the label, time included, has more than %d bytes, or is not UTF-8 without "
-                        "control characters",
-                        (int) QUERY_NAME_MAX);
-}
-
-/* Counts the row, and records the largest step of a joint. */
-static void measure_step(struct joint_table *table)
-{
-    const double *value = table->joints->value;
-    const size_t count = table->joints->robot->joint_count;
-    for (size_t j = 0; j < count && table->rows > 0; j++) {
-        const double by = fabs(value[j] - table->before[j]);
-        if (by > table->step.by)
-            table->step = (struct joint_report){value[j], by, j, table->path, table->line};
-    }
-    if (count > 0)
-        memcpy(table->before, value, count * sizeof *value);
-    table->rows++;
+    return set_place(table, row->line);
 }
 
 void joint_table_describe(const struct joint_table *table, FILE *out)
@@ -455,7 +476,7 @@ void joint_table_describe(const struct joint_table *table, FILE *out)
     const struct robot *robot = table->joints->robot;
     char by[NUMBER_TEXT_MAX];
     escape_text(out, table->path);
-    fprintf(out, ": rows: %zu", table->rows);
+    fprintf(out, ": rows: %zu", table->row_count);
     if (table->step.by > 0)
         fprintf(out, ", largest step %s of '%s' to line %lu", number_short(table->step.by, by),
                 robot->joints[table->step.joint].name->name, table->step.line);
@@ -474,30 +495,4 @@ void joint_table_describe(const struct joint_table *table, FILE *out)
     if (table->unknown > 0)
         fprintf(out, "; ignored: columns of no joint: %zu ('%s')", table->unknown,
                 table->unknown_name);
-}
-
-enum joint_row joint_table_next(struct joint_table *table)
-{
-    const char *label = NULL;
-    size_t found;
-    enum joint_row outcome = read_line(table, &found);
-    if (outcome == JOINT_ROW_END && table->rows == 0)
-        return refuse(table, "expected a row of joint values, found none");
-    if (outcome == JOINT_ROW && found != table->columns)
-        return refuse(table, "%zu columns, but the first line has %zu", found, table->columns);
-    for (size_t i = 0; outcome == JOINT_ROW && i < found; i++) {
-        const unsigned column = table->column[i];
-        if (column == COLUMN_LABEL)
-            label = table->field[i];
-        else if (column == COLUMN_TIME)
-            outcome = take_time(table, table->field[i]);
-        else if (column != COLUMN_IGNORED && !set_value(table->joints, column, table->field[i],
-                                                        table->path, table->line, table->place))
-            outcome = JOINT_ROW_BAD;
-    }
-    if (outcome == JOINT_ROW) {
-        joints_follow(table->joints, table->path, table->line);
-        measure_step(table);
-    }
-    return outcome == JOINT_ROW ? set_label(table, label) : outcome;
 }

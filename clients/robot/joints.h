@@ -38,7 +38,7 @@ bool joints_open(const struct robot *robot, const char *text, double slack, stru
 void joints_clear(struct joints *joints);
 
 /* Sets the mimic joints that are not given, from the values of the joints that they follow. path
- * and line: place of those values, for messages. joint_table_next() calls it for each row. */
+ * and line: place of those values, for messages. joint_table_read() calls it for each row. */
 void joints_follow(struct joints *joints, const char *path, unsigned long line);
 
 /* Returns whether all values are within the slack. If not, reports the farthest value of each joint
@@ -52,44 +52,46 @@ bool joints_check(const struct joints *joints);
  * the parts. */
 void joints_describe(const struct joints *joints, const char *before, FILE *out);
 
-/* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
- * any order: one for each joint that moves and has no value in joints. Columns of mimic joints,
- * "time", in seconds, and "label" are optional; others are ignored. Memory holds one line. */
-struct joint_table {
-    /* Of the current row. */
-    bool has_time;
-    double time;                    /* not before the time of the previous row */
-    char label[QUERY_NAME_MAX + 1]; /* "label (t = 0.5)", "label", "t = 0.5" or "" */
-    unsigned long line;             /* in the file, from 1 */
-    char *place;                    /* the file and line, for messages */
-    /* Private. */
-    struct joints *joints;
-    const char *path;
-    FILE *file;
-    char *text, **field; /* owned: of the line; field: [columns] */
-    unsigned *column;    /* owned: [columns], the joint */
-    size_t columns;
-    size_t fixed, unknown;                 /* columns that are ignored */
-    char unknown_name[QUERY_NAME_MAX + 1]; /* of the first one */
-    double *before;                        /* owned: [joint_count], values of the previous row */
-    size_t rows;                           /* since the beginning */
-    struct joint_report step;              /* of a joint from row to row */
+struct joint_row {
+    unsigned long line;  /* in the file, from 1 */
+    double time;         /* not before the time of the previous row; NAN: there is no column */
+    const char *label;   /* "label (t = 0.5)", "label", "t = 0.5"; or NULL */
+    const double *value; /* [joint_count], of all joints of the tree */
 };
 
-/* Opens a regular file, and reads its first line. joints: receives the values of rows. Returns
- * false after an error. The caller passes the table to joint_table_close() in either case. */
-bool joint_table_open(const char *path, struct joints *joints, struct joint_table *out);
-void joint_table_close(struct joint_table *table);
+/* A CSV file (RFC 4180, without line breaks in fields). Its first line has the names of columns, in
+ * any order: one for each joint that moves and has no value in joints. Columns of mimic joints,
+ * "time", in seconds, and "label" are optional; others are ignored. */
+struct joint_table {
+    const char *path;
+    bool has_time;
+    struct joint_row *rows; /* owned, [row_count]: at least one */
+    size_t row_count;
+    /* Private. */
+    struct joints *joints;
+    FILE *file;
+    unsigned long line; /* the last one that was read */
+    char *text, *place; /* owned: of this line, and where it is, for messages */
+    char **field;       /* owned: of the line; [columns] */
+    unsigned *column;   /* owned: [columns], the joint */
+    size_t columns, text_capacity, row_capacity;
+    size_t fixed, unknown;                 /* columns that are ignored */
+    char unknown_name[QUERY_NAME_MAX + 1]; /* of the first one */
+    struct joint_report step;              /* largest step of a joint from row to row */
+    struct owned_scene memory;             /* of values and labels */
+};
 
-/* Reads the next row. A table without rows is an error. */
-enum joint_row { JOINT_ROW, JOINT_ROW_END, JOINT_ROW_BAD /* after an error */ };
-enum joint_row joint_table_next(struct joint_table *table);
+/* Reads a file; "-" is standard input. joints: receives the values of one row after the other.
+ * Returns false after an error. The caller passes the table to joint_table_clear() in either case.
+ */
+bool joint_table_read(const char *path, struct joints *joints, struct joint_table *out);
+void joint_table_clear(struct joint_table *table);
+
+/* Returns where a row is, for messages: its file and line. Valid until the next call. */
+const char *joint_table_place(struct joint_table *table, const struct joint_row *row);
 
 /* Writes "PATH: rows: N, largest step ...", the joints without a column, and how many columns were
  * ignored. */
 void joint_table_describe(const struct joint_table *table, FILE *out);
-
-/* Goes back to the first row. */
-bool joint_table_rewind(struct joint_table *table);
 
 #endif

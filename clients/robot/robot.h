@@ -1,6 +1,6 @@
 /* A robot of rigid links and joints, as a URDF file describes it, and the poses of its links.
  * robot_read() makes one, robot_place() poses it for any values of its joints.
- * Not here: links as bodies of the engine (robot_body.h), scenes of them (robot_scene.h), values of
+ * Not here: links as bodies of the engine (robot_body.c), scenes of them (robot_scene.h), values of
  * joints (joints.h).
  *
  * Errors are collected in a text, a line for each, which names the file, the line and the link or

@@ -1,5 +1,9 @@
+/* Links of a robot as bodies of the engine. Boxes, spheres and capsules are exact. A cylinder
+ * becomes a hull that encloses it; a mesh becomes the hull of the vertices of its faces, or a hull
+ * for each object. A hull of too many vertices becomes one of fewer with a radius, which contains
+ * the mesh (mesh_hull_cover()). */
 #define _XOPEN_SOURCE 700 /* realpath */
-#include "robot_body.h"
+#include "robot_scene.h"
 
 #include "allocate.h"
 #include "enclosure.h"

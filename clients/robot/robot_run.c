@@ -54,11 +54,17 @@ bool robot_run_take_base(const struct args *args, void *out)
            args_error(args, "--base: expected X,Y,Z or X,Y,Z,ROLL,PITCH,YAW, found '%s'", optarg);
 }
 
-bool robot_run_place(struct robot_run *run, double time, const char *where)
+void robot_run_print(const char *path, const char *text)
 {
-    const bool good = robot_scene_place(run->scene, run->joints.value, time, where);
+    for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at == '\n')
+        complain("%s%s%.*s", path, *path ? ": " : "", (int) strcspn(at, "\n"), at);
+}
+
+bool robot_run_place(struct robot_run *run, const double *value, double time, const char *where)
+{
+    const bool good = robot_scene_place(run->scene, value, time, where);
     if (!good)
-        robot_world_print("", robot_lines_text(&run->scene->errors));
+        robot_run_print("", robot_lines_text(&run->scene->errors));
     return good;
 }
 
@@ -184,7 +190,7 @@ static void report_more(const struct robot_run *run)
         if (robot->body_of_link[i] == ROBOT_NO_BODY)
             complain("%s: link '%s' has no <collision> and no body", tree->path,
                      tree->links[i].name->name);
-    robot_world_print("", robot_lines_text(&run->scene->notes));
+    robot_run_print("", robot_lines_text(&run->scene->notes));
     for (size_t i = 0; i < run->scene->ignored.count; i++) {
         const struct robot_pair *pair = &run->scene->ignored.pair[i];
         const struct fmb_placement *a = &run->scene->placements[pair->a];
@@ -213,11 +219,79 @@ void robot_run_report(const struct robot_run *run, const struct joint_table *tab
         joint_table_describe(table, out);
     joints_describe(&run->joints, table ? "; " : "joints: ", out);
     fclose(out);
-    robot_world_print("", text);
+    robot_run_print("", text);
     free(text);
     if (run->options->verbose)
         report_more(run);
 }
+
+/* ---- Bodies around the robot ---- */
+
+/* Whether a file is XML: it begins with <, after white space and a byte order mark. */
+static bool is_xml(const char *path)
+{
+    int byte = EOF;
+    FILE *file = fopen(path, "r");
+    if (file)
+        while ((byte = getc(file)) > 0 && strchr(" \t\r\n\xef\xbb\xbf", byte)) {
+        }
+    if (file)
+        fclose(file);
+    return byte == '<';
+}
+
+bool robot_world_read(const char *path, const struct fmb_robot_options *options,
+                      struct robot_world *out)
+{
+    *out = (struct robot_world){.json = NULL};
+    if (!is_xml(path)) {
+        const bool good = fmb_robot_json_read(path, &out->json) == 0;
+        const char *why = out->json->why;
+        if (!good)
+            complain("%s%s", why,
+                     strstr(why, ": no body has the ") ? " (--ignore takes names of links)" : "");
+        out->world = out->json->world;
+        out->world.name = path;
+        return good;
+    }
+    struct fmb_robot_options as_obstacle = *options;
+    as_obstacle.srdf = NULL;
+    memset(as_obstacle.base, 0, sizeof as_obstacle.base);
+    if (fmb_robot_read(path, &as_obstacle, &out->robot) != 0) {
+        robot_run_print("", fmb_robot_why(out->robot));
+        return false;
+    }
+    if (fmb_robot_scene(out->robot, NULL, 0, NULL, 0, &out->scene) != 0) {
+        robot_run_print(path, fmb_robot_scene_why(out->scene));
+        return false;
+    }
+    out->scene->owner.scene.ignored_count = 0;
+    out->world = (struct fmb_robot_world){.scene = &out->scene->owner.scene, .name = path};
+    return true;
+}
+
+void robot_world_clear(struct robot_world *world)
+{
+    fmb_robot_json_free(world->json);
+    fmb_robot_scene_free(world->scene);
+    fmb_robot_free(world->robot);
+}
+
+/* Gives the links of all robots among the worlds one group, which no other body has. */
+static void set_groups(struct robot_world *worlds, size_t count)
+{
+    int64_t most = 0;
+    for (size_t w = 0; w < count; w++)
+        for (size_t i = 0; worlds[w].json && i < worlds[w].world.scene->placement_count; i++) {
+            const int64_t group = worlds[w].world.scene->placements[i].group;
+            most = group > most ? group : most;
+        }
+    for (size_t w = 0; w < count; w++)
+        for (size_t i = 0; worlds[w].scene && i < worlds[w].scene->owner.scene.placement_count; i++)
+            worlds[w].scene->placements[i].group = most + 1;
+}
+
+/* ---- The scene ---- */
 
 /* Reads the worlds, and makes the scene. */
 static bool make_scene(struct robot_run *run)
@@ -228,13 +302,13 @@ static bool make_scene(struct robot_run *run)
     bool good = true;
     for (size_t w = 0; w < count; w++)
         good = robot_world_read(options->world[w], &options->robot, &run->worlds[w]) && good;
-    robot_world_set_groups(run->worlds, count);
+    set_groups(run->worlds, count);
     for (size_t w = 0; w < count; w++)
         world[w] = run->worlds[w].world;
     if (good &&
         fmb_robot_scene(run->robot, world, count, (const char *const(*)[2]) options->ignored,
                         options->ignored_count, &run->scene) != 0) {
-        robot_world_print("", fmb_robot_scene_why(run->scene));
+        robot_run_print("", fmb_robot_scene_why(run->scene));
         good = false;
     }
     if (good && options->margin >= 0)
@@ -249,7 +323,7 @@ bool robot_run_begin(const struct robot_run_options *options, const char *path,
     *out = (struct robot_run){.options = options,
                               .worlds = allocate(options->world_count, sizeof *out->worlds)};
     if (fmb_robot_read(path, &options->robot, &out->robot) != 0) {
-        robot_world_print("", fmb_robot_why(out->robot));
+        robot_run_print("", fmb_robot_why(out->robot));
         return false;
     }
     return joints_open(&out->robot->tree, options->joints, options->slack, &out->joints) &&

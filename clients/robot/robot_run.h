@@ -7,7 +7,6 @@
 #include "enclosure.h"
 #include "joints.h"
 #include "robot_scene.h"
-#include "robot_world.h"
 
 #include <float.h>
 
@@ -54,9 +53,10 @@ struct robot_run_options {
     "                       radians, or lengths of prismatic joints. Without a value,\n" \
     "                       a mimic joint follows the joint that it names; any other\n"  \
     "                       has 0, or the middle of its limits if 0 is outside\n"        \
-    "  --joints-csv FILE    a table with a column for each joint that moves, named in\n" \
-    "                       its first line; columns for mimic joints, \"label\" and\n"   \
-    "                       \"time\" are optional. Other columns are ignored\n"          \
+    "  --joints-csv FILE    a table ('-': standard input) with a column for each\n"      \
+    "                       joint that moves, named in its first line; columns for\n"    \
+    "                       mimic joints, \"label\" and \"time\" are optional. Other\n"  \
+    "                       columns are ignored\n"                                       \
     "  --base POSE          X,Y,Z or X,Y,Z,ROLL,PITCH,YAW: the pose of the root link,\n" \
     "                       as in an <origin>\n"                                         \
     "  --limit-slack D      how far values may be outside the limits of their joints,\n" \
@@ -104,6 +104,21 @@ bool robot_run_take_ignored(const struct args *args, void *out);
 /* Takes X,Y,Z or X,Y,Z,ROLL,PITCH,YAW. */
 bool robot_run_take_base(const struct args *args, void *out);
 
+/* Bodies around a robot, from a file: a scene of JSON; or a robot of URDF, whose links are
+ * obstacles of one group. */
+struct robot_world {
+    struct fmb_robot_json *json;   /* NULL: URDF */
+    struct fmb_robot *robot;       /* NULL: JSON */
+    struct fmb_robot_scene *scene; /* of the robot, at home */
+    struct fmb_robot_world world;  /* for fmb_robot_scene() */
+};
+
+/* Reads a file. options: of a robot. Returns false after errors, which were printed on stderr. The
+ * caller passes the world to robot_world_clear() in either case. */
+bool robot_world_read(const char *path, const struct fmb_robot_options *options,
+                      struct robot_world *out);
+void robot_world_clear(struct robot_world *world);
+
 /* A robot among the bodies of files. */
 struct robot_run {
     const struct robot_run_options *options;
@@ -125,8 +140,12 @@ void robot_run_end(struct robot_run *run);
  * exit code. */
 int robot_run_parse(struct args *args, int argc, char **argv, struct robot_run_options *options);
 
-/* As robot_scene_place(), for the values of the joints; errors are printed. */
-bool robot_run_place(struct robot_run *run, double time, const char *where);
+/* Prints lines, which are separated by line feeds, on stderr, each with "PATH: " before it unless
+ * path is "". */
+void robot_run_print(const char *path, const char *text);
+
+/* As robot_scene_place(); errors are printed. */
+bool robot_run_place(struct robot_run *run, const double *value, double time, const char *where);
 
 /* Sets the size, in the current pose. */
 void robot_run_measure(struct robot_run *run);

@@ -3,12 +3,17 @@
 #include "robot_scene.h"
 
 #include "allocate.h"
+#include "json.h"
 #include "query.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- Pairs ---- */
 
@@ -385,4 +390,49 @@ int fmb_robot_place(struct fmb_robot_scene *scene, const double *q)
         }
     }
     return robot_scene_place(scene, scene->value, 0, "") ? 0 : -1;
+}
+
+/* ---- Scenes of JSON ---- */
+
+int fmb_robot_json_read(const char *path, struct fmb_robot_json **out)
+{
+    struct fmb_robot_json *json = *out = allocate(1, sizeof *json);
+    struct owned_scene second = {.dim = 0};
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    json->world.scene = &json->owner.scene;
+    if (fd < 0) {
+        snprintf(json->why, sizeof json->why, "%s: %s", path, strerror(errno));
+        return -1;
+    }
+    struct json_reader *reader = json_open(fd);
+    json_allow_links(reader);
+    enum json_outcome outcome = json_next(reader, &json->owner);
+    if (outcome == JSON_SCENE)
+        outcome = json_next(reader, &second);
+    if (outcome != JSON_END)
+        snprintf(
+            json->why, sizeof json->why, "%s: %s", path,
+            outcome == JSON_SCENE ? "expected one scene, found a second one" : json_error(reader));
+    json->world.links = json->owner.links;
+    scene_clear(&second);
+    json_close(reader);
+    close(fd);
+    return outcome == JSON_END ? 0 : -1;
+}
+
+void fmb_robot_json_free(struct fmb_robot_json *json)
+{
+    if (json)
+        scene_clear(&json->owner);
+    free(json);
+}
+
+const char *fmb_robot_json_why(const struct fmb_robot_json *json)
+{
+    return json->why;
+}
+
+const struct fmb_robot_world *fmb_robot_json_get(const struct fmb_robot_json *json)
+{
+    return &json->world;
 }

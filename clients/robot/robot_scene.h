@@ -4,7 +4,7 @@
 #define ROBOT_SCENE_H
 
 #include "fmb_robot.h"
-#include "robot_body.h"
+#include "robot.h"
 
 /* Why a pair is ignored; of several reasons the first one counts. */
 enum robot_origin {
@@ -31,6 +31,14 @@ struct robot_pairs {
 void robot_pairs_add(struct robot_pairs *pairs, unsigned a, unsigned b, enum robot_origin origin);
 void robot_pairs_sort(struct robot_pairs *pairs);
 bool robot_pairs_has(const struct robot_pairs *pairs, unsigned a, unsigned b); /* once sorted */
+
+/* What was done to the meshes of a robot. All 0: nothing. */
+struct robot_meshes {
+    size_t scaled;          /* number of COLLADA meshes whose unit is not 1 m */
+    const char *first_file; /* the first of these, and its unit in metres */
+    double first_unit;
+    double excess; /* the largest radius of a hull */
+};
 
 #define ROBOT_NO_BODY UINT32_MAX
 
@@ -63,9 +71,29 @@ struct fmb_robot {
     struct owned_scene owner; /* of the bodies and of arrays */
 };
 
+/* Makes the body of a link that has at least one collision element. If it has only one, the body
+ * has the origin of the element, and the numbers of the file. If it has several, the body has the
+ * origin of the link, and the numbers of elements with an origin are rounded.
+ *
+ * In:     options  valid; sides is not 0
+ * In/out: scene    of dim 3; owns the body; its `outside` is raised
+ *         meshes   of the robot so far
+ * Out:    *origin  of the body, in the link
+ * Returns NULL after errors, which the robot has. */
+const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *link,
+                                  const struct fmb_robot_options *options,
+                                  struct owned_scene *scene, struct robot_meshes *meshes,
+                                  struct pose *origin);
+
 /* Reads the SRDF file of the options into a robot whose bodies are made. Returns false after
  * errors, which the robot has. */
 bool robot_read_srdf(struct fmb_robot *robot);
+
+struct fmb_robot_json {
+    struct owned_scene owner;
+    struct fmb_robot_world world;
+    char why[4800];
+};
 
 struct robot_carried {
     const char *name; /* of the link */

@@ -1,22 +1,106 @@
 /* Reads URDF: links and joints; all else (<visual>, <inertial>, <gazebo>, ...) is ignored. Links,
- * joints and elements are bounded (robot.h). */
-#include "urdf_reader.h"
+ * joints and elements are bounded (robot.h).
+ *
+ * Reads SRDF: which pairs of links are not tested. All else (<group>, <end_effector>, ...) is
+ * ignored. As in MoveIt, <disable_collisions> has precedence over <enable_collisions>, and both
+ * over <disable_default_collisions>, which disables all pairs of a link. */
+#include "robot_scene.h"
+#include "xml.h"
 
 #include "allocate.h"
 #include "query.h"
 #include "turn.h"
 #include "utf8.h"
 
+#include <errno.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* ---- Attributes ---- */
+/* ---- Files and their elements ---- */
+
+/* Reads a file, or its first bytes if it has more than ROBOT_BYTES_MAX. Check ferror(). */
+static unsigned char *read_bytes(FILE *file, struct owned_scene *memory, size_t *size)
+{
+    unsigned char *bytes = NULL;
+    size_t capacity = 0;
+    *size = 0;
+    while (!feof(file) && !ferror(file) && *size <= ROBOT_BYTES_MAX) {
+        bytes = allocate_grow(bytes, &capacity, *size + BUFSIZ, 1);
+        *size += fread(bytes + *size, 1, capacity - *size, file);
+    }
+    unsigned char *out = scene_alloc(memory, *size, 1);
+    if (*size > 0)
+        memcpy(out, bytes, *size);
+    free(bytes);
+    return out;
+}
+
+/* Reads a file of at most ROBOT_BYTES_MAX; "-" is standard input. Returns the outermost element,
+ * which belongs to the robot; NULL after an error: the file cannot be read, is not XML, or is
+ * xacro. */
+static const struct xml_element *open_file(struct robot *robot, const char *path)
+{
+    const bool named = strcmp(path, "-") != 0;
+    FILE *file = named ? fopen(path, "r") : stdin;
+    size_t size = 0;
+    unsigned char *bytes = file ? read_bytes(file, &robot->memory, &size) : NULL;
+    const char *why = !file || ferror(file)    ? strerror(errno)
+                      : size > ROBOT_BYTES_MAX ? "more than 8 MB"
+                                               : NULL;
+    struct xml_error error;
+    robot->file = named ? path : "standard input";
+    robot_begin(robot, NULL, NULL);
+    if (named && file)
+        fclose(file);
+    if (why) {
+        robot_say(&robot->errors, "%s: %s", robot->file, why);
+        robot->bad = true;
+        return NULL;
+    }
+    const struct xml_element *root = xml_parse(bytes, size, &robot->memory, &error);
+    if (!root)
+        robot_refuse(robot, error.line, "%s", error.text);
+    for (const struct xml_element *at = root; at; at = xml_next(at))
+        if (strncmp(at->name, "xacro:", 6) == 0)
+            robot_refuse(robot, at->line, "<%.64s>: expand the file with xacro first", at->name);
+    return robot->failed ? NULL : root;
+}
+
+/* Returns the only element of this name in a parent, or NULL. */
+static const struct xml_element *only_child(struct robot *robot, const struct xml_element *parent,
+                                            const char *name)
+{
+    const struct xml_element *found = xml_child(parent, name);
+    for (const struct xml_element *other = found ? found->next : NULL; other; other = other->next)
+        if (xml_is(other, name))
+            robot_refuse(robot, other->line, "there is a second <%s>", name);
+    return found;
+}
+
+/* Returns the value of an attribute; NULL if it is missing, which is an error if it is required. An
+ * empty value and an expression of xacro are errors. */
+static const char *attribute(struct robot *robot, const struct xml_element *element,
+                             const char *name, bool required)
+{
+    const char *value = xml_attribute(element, name);
+    if (!value && required)
+        robot_refuse(robot, element->line, "<%s> has no %s", element->name, name);
+    else if (value && !*value)
+        robot_refuse(robot, element->line, "<%s>: %s is empty", element->name, name);
+    else if (value && (strstr(value, "${") || strstr(value, "$(")))
+        robot_refuse(robot, element->line, "<%s>: %s is '%.64s': expand the file with xacro first",
+                     element->name, name, value);
+    return value && *value ? value : NULL;
+}
+
+/* ---- Attributes of URDF ---- */
 
 /* Reads count numbers. A missing attribute leaves out unchanged. */
 static void read_numbers(struct robot *robot, const struct xml_element *node, const char *name,
                          bool required, int count, double *out)
 {
-    const char *value = urdf_attribute(robot, node, name, required);
+    const char *value = attribute(robot, node, name, required);
     if (value && !robot_numbers(value, count, out))
         robot_refuse(robot, node->line, "<%s>: %s is '%.64s', expected %d finite number%s",
                      node->name, name, value, count, count > 1 ? "s, separated by spaces" : "");
@@ -36,7 +120,7 @@ static void read_sizes(struct robot *robot, const struct xml_element *node, cons
 static void read_origin(struct robot *robot, const struct xml_element *parent, struct pose *out,
                         double rpy[3])
 {
-    const struct xml_element *node = urdf_child(robot, parent, "origin");
+    const struct xml_element *node = only_child(robot, parent, "origin");
     double q[4] = {0};
     *out = POSE_IDENTITY;
     memset(rpy, 0, 3 * sizeof *rpy);
@@ -76,7 +160,7 @@ static void read_origin(struct robot *robot, const struct xml_element *parent, s
 static const struct robot_name *begin(struct robot *robot, const struct xml_element *node,
                                       struct robot_name **table)
 {
-    const char *name = urdf_attribute(robot, node, "name", true);
+    const char *name = attribute(robot, node, "name", true);
     const struct robot_name *first;
     struct robot_name *added = NULL;
     if (!name)
@@ -116,7 +200,7 @@ static void read_shape(struct robot *robot, const struct xml_element *node,
         read_sizes(robot, node, "radius", 1, out->size);
     } else if (xml_is(node, "mesh")) {
         out->shape = ROBOT_MESH;
-        out->file = urdf_attribute(robot, node, "filename", true);
+        out->file = attribute(robot, node, "filename", true);
         out->size[0] = out->size[1] = out->size[2] = 1;
         read_numbers(robot, node, "scale", false, 3, out->size);
     } else {
@@ -136,7 +220,7 @@ static const struct xml_element *skip_foreign(const struct xml_element *node)
 
 static void read_collision(struct robot *robot, const struct xml_element *node)
 {
-    const struct xml_element *geometry = urdf_child(robot, node, "geometry");
+    const struct xml_element *geometry = only_child(robot, node, "geometry");
     const struct xml_element *first = geometry ? geometry->child : NULL, *own = skip_foreign(first);
     const struct xml_element *second = own ? skip_foreign(own->next) : NULL,
                              *shape = own ? own : first;
@@ -183,7 +267,7 @@ static void read_link(struct robot *robot, const struct xml_element *node)
 static void read_type(struct robot *robot, const struct xml_element *node, struct robot_joint *out)
 {
     static const char *const types[] = {"revolute", "continuous", "prismatic", "fixed"};
-    const char *type = urdf_attribute(robot, node, "type", true);
+    const char *type = attribute(robot, node, "type", true);
     for (int i = 0; type && i < 4; i++)
         if (strcmp(types[i], type) == 0) {
             out->type = (enum robot_joint_type) i;
@@ -224,12 +308,12 @@ static void read_joint(struct robot *robot, const struct xml_element *node)
         return;
     read_type(robot, node, &joint);
     read_origin(robot, node, &joint.origin, joint.rpy);
-    const struct xml_element *axis = urdf_child(robot, node, "axis"),
-                             *limit = urdf_child(robot, node, "limit"),
-                             *mimic = urdf_child(robot, node, "mimic");
+    const struct xml_element *axis = only_child(robot, node, "axis"),
+                             *limit = only_child(robot, node, "limit"),
+                             *mimic = only_child(robot, node, "mimic");
     for (int end = 0; end < 2; end++) {
-        const struct xml_element *link = urdf_child(robot, node, ends[end]);
-        const char *name = link ? urdf_attribute(robot, link, "link", true) : NULL;
+        const struct xml_element *link = only_child(robot, node, ends[end]);
+        const char *name = link ? attribute(robot, link, "link", true) : NULL;
         if (!link)
             robot_refuse(robot, node->line, "there is no <%s>", ends[end]);
         else if (name && !utf8_is_text(name))
@@ -240,7 +324,7 @@ static void read_joint(struct robot *robot, const struct xml_element *node)
     if (axis)
         read_axis(robot, axis, &joint);
     if (mimic && joint.type != ROBOT_FIXED) {
-        joint.mimic_name = urdf_attribute(robot, mimic, "joint", true);
+        joint.mimic_name = attribute(robot, mimic, "joint", true);
         read_numbers(robot, mimic, "multiplier", false, 1, &joint.multiplier);
         read_numbers(robot, mimic, "offset", false, 1, &joint.offset);
         joint.mimic_name = robot->failed ? NULL : joint.mimic_name;
@@ -264,7 +348,7 @@ static void read_joint(struct robot *robot, const struct xml_element *node)
     robot->joints[robot->joint_count++] = joint;
 }
 
-/* ---- The file ---- */
+/* ---- A file of URDF ---- */
 
 static void read_robot(struct robot *robot, const struct xml_element *root)
 {
@@ -276,7 +360,7 @@ static void read_robot(struct robot *robot, const struct xml_element *root)
                      "expected <robot>, found <%.64s>: SDF and others are not supported: give the "
                      "robot as URDF",
                      root->name);
-    const char *title = urdf_attribute(robot, root, "name", false);
+    const char *title = attribute(robot, root, "name", false);
     if (title)
         robot->title = title;
     for (const struct xml_element *node = root->child; node && !robot->failed; node = node->next) {
@@ -303,8 +387,125 @@ bool robot_read(const char *path, struct robot *out)
 {
     *out = (struct robot){.title = ""};
     out->path = scene_text(&out->memory, strcmp(path, "-") == 0 ? "standard input" : path);
-    const struct xml_element *root = urdf_open(out, path);
+    const struct xml_element *root = open_file(out, path);
     if (root)
         read_robot(out, root);
     return root && robot_connect(out);
+}
+
+/* ---- SRDF ---- */
+
+struct srdf {
+    struct fmb_robot *robot;
+    size_t known;                /* names of links that the robot has */
+    struct robot_pairs disabled; /* pairs, sorted at the end */
+};
+
+/* Returns the body of the link that an attribute names; ROBOT_NO_BODY if it has none, or after an
+ * error, or if the robot has no such link, which is counted. */
+static unsigned read_body(struct srdf *srdf, const struct xml_element *node, const char *name_of)
+{
+    struct robot *tree = &srdf->robot->tree;
+    const char *name = attribute(tree, node, name_of, true);
+    const struct robot_name *found, *first;
+    if (!name)
+        return ROBOT_NO_BODY;
+    HASH_FIND(hh, tree->link_names, name, strlen(name), found);
+    srdf->known += found != NULL;
+    if (found)
+        return srdf->robot->body_of_link[found->index];
+    robot_add_name(tree, &srdf->robot->unknown, name, &first);
+    return ROBOT_NO_BODY;
+}
+
+static void read_pair(struct srdf *srdf, const struct xml_element *node, struct robot_pairs *out)
+{
+    const unsigned a = read_body(srdf, node, "link1"), b = read_body(srdf, node, "link2");
+    if (a != ROBOT_NO_BODY && b != ROBOT_NO_BODY && a != b)
+        robot_pairs_add(out, a, b, ROBOT_SRDF);
+}
+
+static void read_default(struct srdf *srdf, const struct xml_element *node)
+{
+    struct fmb_robot *robot = srdf->robot;
+    const unsigned body = read_body(srdf, node, "link");
+    if (body == ROBOT_NO_BODY)
+        return;
+    if (!robot->untested)
+        robot->untested = scene_alloc(&robot->owner, robot->body_count, sizeof *robot->untested);
+    robot->untested[body] = true;
+}
+
+static void read_elements(struct srdf *srdf, const struct xml_element *root)
+{
+    struct robot *tree = &srdf->robot->tree;
+    if (!xml_is(root, "robot"))
+        robot_refuse(tree, root->line, "expected <robot>, found <%.64s>: give a file of SRDF",
+                     root->name);
+    for (const struct xml_element *node = root->child; node && !tree->failed; node = node->next) {
+        if (xml_is(node, "link") || xml_is(node, "joint")) {
+            robot_refuse(tree, node->line, "<%s>: this is URDF: --srdf takes a file of SRDF",
+                         node->name);
+            return;
+        }
+        if (xml_is(node, "disable_collisions"))
+            read_pair(srdf, node, &srdf->disabled);
+        else if (xml_is(node, "enable_collisions"))
+            read_pair(srdf, node, &srdf->robot->enabled);
+        else if (xml_is(node, "disable_default_collisions"))
+            read_default(srdf, node);
+        tree->failed = false; /* the others are read too */
+    }
+}
+
+/* Adds the pairs of links whose collisions are disabled by default. */
+static bool add_defaults(struct srdf *srdf)
+{
+    enum { PAIRS_MAX = 1 << 20 };
+    const struct fmb_robot *robot = srdf->robot;
+    for (unsigned a = 0; robot->untested && a < robot->body_count; a++)
+        for (unsigned b = 0; robot->untested[a] && b < robot->body_count; b++) {
+            if (a == b || (b < a && robot->untested[b]) || robot_pairs_has(&robot->enabled, a, b))
+                continue;
+            if (srdf->disabled.count == PAIRS_MAX) {
+                robot_say(&srdf->robot->tree.errors,
+                          "%s: <disable_default_collisions>: more than %d pairs", srdf->robot->srdf,
+                          (int) PAIRS_MAX);
+                return false;
+            }
+            robot_pairs_add(&srdf->disabled, a, b, ROBOT_SRDF_DEFAULT);
+        }
+    return true;
+}
+
+/* Counts the neighbours that are tested, since the file does not disable them. */
+static size_t count_unlisted(const struct fmb_robot *robot, const struct robot_pairs *disabled)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < robot->ignored.count; i++)
+        count += !robot_pairs_has(disabled, robot->ignored.pair[i].a, robot->ignored.pair[i].b);
+    return count;
+}
+
+bool robot_read_srdf(struct fmb_robot *robot)
+{
+    struct srdf srdf = {.robot = robot};
+    struct robot *tree = &robot->tree;
+    const struct xml_element *root = open_file(tree, robot->srdf);
+    if (root)
+        read_elements(&srdf, root);
+    bool good = !tree->bad;
+    if (good && srdf.known == 0 && robot->unknown) {
+        robot_say(&robot->tree.errors,
+                  "%s: no link that it names is one of %s: is it of another robot?", robot->srdf,
+                  robot->tree.path);
+        good = false;
+    }
+    robot_pairs_sort(&robot->enabled);
+    good = good && add_defaults(&srdf);
+    robot_pairs_sort(&srdf.disabled);
+    robot->unlisted = count_unlisted(robot, &srdf.disabled);
+    free(robot->ignored.pair);
+    robot->ignored = srdf.disabled;
+    return good;
 }

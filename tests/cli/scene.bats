@@ -528,7 +528,7 @@ fmb: robot.urdf: joint 'slide' (a mimic of 'turn'): -inf is outside its limits, 
 0.75'
     [[ $stderr == *"to line 3; not in it: slide" ]]
     printf 'turn,slide\n0.5,0.5\n' > t.csv
-    positions --joints-csv t.csv
+    positions --joints-csv - < t.csv
     is 0.5
     printf 'turn\n0\n0.75\n' > t.csv
     positions --joints-csv t.csv
@@ -588,8 +588,8 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     refused 't.csv: expected a line of joint names, found none' robot.urdf --joints-csv t.csv
     bad 't.csv: line 3: expected a row of joint values, found none' turn,slide ''
     refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
-    refused '/dev/null: not a regular file' robot.urdf --joints-csv /dev/null
-    refused '-: not a regular file, which is needed because it is read twice' robot.urdf --joints-csv -
+    refused '/dev/null: expected a line of joint names' robot.urdf --joints-csv /dev/null
+    refused '.: line 1: Is a directory' robot.urdf --joints-csv .
     head -c 2000000 /dev/zero > t.csv
     refused 't.csv: line 1: has a zero byte (save the table as UTF-8), or more than 1048575 bytes' robot.urdf --joints-csv t.csv
 }

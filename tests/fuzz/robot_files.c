@@ -1,18 +1,16 @@
 /* Reads a robot, a table of joint values, and a mesh, separated by zero bytes, as files; the second
  * as SRDF and as a world too. What is refused is reported. What is read is a tree whose poses are
- * rotations; its scene is valid, and reads back the same; a table that is read again has the same
- * rows. */
+ * rotations; its scene is valid, and reads back the same. */
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz.h"
 
 #include "joints.h"
 #include "json.h"
-#include "robot_scene.h"
+#include "robot_run.h"
 #include "same_scene.h"
 #include "scene_json.h"
 #include "turn.h"
 #include "utf8.h"
-#include "robot_world.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -188,11 +186,11 @@ static void check_scenes(const struct fmb_robot *robot, const double *value,
 
 static const double slack = 0.001;
 
-static void check_row(const struct robot *robot, const struct joint_table *table,
-                      const struct joints *joints, double *time)
+static void check_row(const struct joint_table *table, const struct joint_row *row, bool refused)
 {
-    const double *value = joints->value;
-    for (size_t i = 0; i < robot->joint_count && !joints->refused; i++) {
+    const struct robot *robot = table->joints->robot;
+    const double *value = row->value;
+    for (size_t i = 0; i < robot->joint_count && !refused; i++) {
         const struct robot_joint *joint = &robot->joints[i];
         FUZZ_CHECK(joint->type == ROBOT_FIXED ||
                    (isfinite(value[i]) && joint->limit[0] - value[i] <= slack &&
@@ -200,26 +198,9 @@ static void check_row(const struct robot *robot, const struct joint_table *table
         FUZZ_CHECK(joint->type == ROBOT_FIXED || joint->type == ROBOT_PRISMATIC ||
                    fabs(value[i]) <= TURN_RADIANS_MAX);
     }
-    FUZZ_CHECK(!table->has_time || (isfinite(table->time) && !(table->time < *time)));
-    FUZZ_CHECK(strlen(table->label) <= QUERY_NAME_MAX && utf8_is_text(table->label));
-    *time = table->time;
-}
-
-/* Adds the bytes of the rows to a hash (FNV-1a). Returns the outcome that ended them. */
-static enum joint_row read_rows(const struct robot *robot, struct joint_table *table,
-                                const struct joints *joints, uint64_t *hash)
-{
-    enum joint_row outcome;
-    double time = -INFINITY;
-    while ((outcome = joint_table_next(table)) == JOINT_ROW) {
-        const unsigned char *bytes = (const void *) joints->value;
-        check_row(robot, table, joints, &time);
-        for (size_t i = 0; i < robot->joint_count * sizeof *joints->value; i++)
-            *hash = (*hash ^ bytes[i]) * UINT64_C(0x100000001b3);
-        for (const char *at = table->label; *at; at++)
-            *hash = (*hash ^ (unsigned char) *at) * UINT64_C(0x100000001b3);
-    }
-    return outcome;
+    FUZZ_CHECK(table->has_time == isfinite(row->time));
+    FUZZ_CHECK(row == table->rows || !(row->time < row[-1].time));
+    FUZZ_CHECK(!row->label || (strlen(row->label) <= QUERY_NAME_MAX && utf8_is_text(row->label)));
 }
 
 static void check_table(const struct fmb_robot *whole)
@@ -227,27 +208,21 @@ static void check_table(const struct fmb_robot *whole)
     const struct robot *robot = &whole->tree;
     struct joints joints;
     struct joint_table table;
-    uint64_t first = 0, second = 0;
-    enum joint_row outcome = JOINT_ROW_BAD;
     begin_messages();
     FUZZ_CHECK(joints_open(robot, NULL, slack, &joints));
-    if (joint_table_open(paths[1], &joints, &table))
-        outcome = read_rows(robot, &table, &joints, &first);
-    FUZZ_CHECK((end_messages() > 0) == (outcome == JOINT_ROW_BAD));
+    const bool good = joint_table_read(paths[1], &joints, &table);
+    FUZZ_CHECK((end_messages() > 0) == !good);
     begin_messages();
     const bool within = joints_check(&joints);
     const int lines = end_messages();
     FUZZ_CHECK(within == !joints.refused && (lines > 0) == !within);
-    if (outcome == JOINT_ROW_END) {
-        FUZZ_CHECK(joint_table_rewind(&table));
-        FUZZ_CHECK(read_rows(robot, &table, &joints, &second) == JOINT_ROW_END);
-        FUZZ_CHECK(first == second);
-    }
-    if (outcome == JOINT_ROW_END && within) {
+    for (size_t i = 0; good && i < table.row_count; i++)
+        check_row(&table, &table.rows[i], joints.refused);
+    if (good && within) {
         check_poses(robot, joints.value);
         check_scenes(whole, joints.value, NULL);
     }
-    joint_table_close(&table);
+    joint_table_clear(&table);
     joints_clear(&joints);
 }
 

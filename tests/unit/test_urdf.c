@@ -7,7 +7,7 @@
 #include "enclosure.h"
 #include "mesh_hull.h"
 #include "rational_solid.h"
-#include "robot_body.h"
+#include "robot_scene.h"
 #include "turn.h"
 
 #include <float.h>
