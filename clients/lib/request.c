@@ -269,20 +269,6 @@ static struct request *find(struct requests *requests, const struct request_resu
     return NULL;
 }
 
-static struct request_answered *answered_at(struct requests *requests, int64_t number)
-{
-    return &requests->answered[(uint64_t) number % REQUEST_ANSWERED_MAX];
-}
-
-/* Whether this is a second result of a query that was repeated. With one service on the bus, that
- * repeat was spurious. */
-static bool was_repeated(struct requests *requests, const struct request_result *result)
-{
-    const struct request_answered *first = answered_at(requests, result->number);
-    return first->used && first->repeated && first->kind == result->kind &&
-           first->number == result->number;
-}
-
 static void pause_request(struct request *request)
 {
     const int doublings = request->refusals < BUSY_DOUBLINGS ? request->refusals : BUSY_DOUBLINGS;
@@ -296,8 +282,7 @@ void requests_take(struct requests *requests, const struct request_result *resul
     struct request *request = find(requests, result);
     if (!request) {
         note_service(requests);
-        if (was_repeated(requests, result))
-            adapt_to_spurious_repeat(&requests->pace[result->kind]);
+        adapt_to_spurious_repeat(&requests->pace[result->kind]);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_received(requests, result->kind);
         pause_request(request);
@@ -311,10 +296,6 @@ void requests_take(struct requests *requests, const struct request_result *resul
         measure(&requests->pace[request->kind], request);
         note_received(requests, request->kind);
         requests->counts.answered++;
-        const int64_t numbers[] = {result->number, number};
-        for (int i = 0; i < 2; i++)
-            *answered_at(requests, numbers[i]) =
-                (struct request_answered){true, request->repeated, request->kind, numbers[i]};
         request->earlier = taken == REQUEST_WHOLE ? number : -1;
         if (taken == REQUEST_COMPLETE)
             request_end(requests, request);

@@ -102,14 +102,6 @@ struct request_pace {
     int64_t reordering_window;  /* from the result of a later query to the repeat of this one */
 };
 
-/* A query that has its result. */
-struct request_answered {
-    bool used, repeated; /* repeated: it was sent more than once */
-    enum fmb_client_kind kind;
-    int64_t number;
-};
-enum { REQUEST_ANSWERED_MAX = 256 };
-
 /* The functions by which requests reach the bus, from the owner of the requests. */
 struct request_transport {
     void *user;
@@ -129,7 +121,6 @@ struct requests {
     int64_t timeout_ns; /* of one try */
     int tries;
     struct fmb_client_counts counts;
-    struct request_answered answered[REQUEST_ANSWERED_MAX]; /* [number % REQUEST_ANSWERED_MAX] */
     struct request request[FMB_CLIENT_RAW_WINDOW];
     int count;           /* under way */
     size_t charge;       /* of all of them */
