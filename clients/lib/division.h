@@ -1,5 +1,5 @@
 /* Divides a scene into parts that fit a datagram, in an order in which sorting the answers into the
- * order of the pairs takes little memory (order.h).
+ * order of the pairs takes little memory (scene_run.h).
  *
  * A part is small enough for all its bodies to be sent whole. There is one exception: a scene that
  * fits a datagram only if the bodies that the service holds are sent by handle is one part. If the

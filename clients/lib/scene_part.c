@@ -1,7 +1,7 @@
 /* Map.
  *
  * In: a part with its placements and pairs (division_next()), and its results (request.h).
- * Out: queries; and part->answers, complete when part->done is set, which order.c delivers.
+ * Out: queries; and part->answers, complete when part->done is set, which scene_run.c delivers.
  *
  * Steps:
  *   1. part_begin() writes the first query and sends it. write_query() sends a body by handle if
@@ -189,7 +189,7 @@ static size_t write_scene(struct part *part, unsigned char *out)
     query->index_count = 2 * (int32_t) pairs;
     for (size_t i = 0; i < 2 * pairs; i++)
         query->pair[i / 2][i % 2] = part->pair[i / 2][i % 2];
-    /* If there is no space for all of them, order.c drops their answers. */
+    /* If there is no space for all of them, scene_run.c drops their answers. */
     query->ignored_count =
         2 * division_ignored(&part->run->division, part,
                              (int32_t) ((max - bytes) / WIRE_PAIR_BYTES), query->ignored);

@@ -38,7 +38,7 @@ struct part {
     unsigned placement[QUERY_PLACEMENTS_MAX]; /* [in the part]: index in the scene */
     uint16_t pair[QUERY_PAIRS_MAX][2];        /* LISTED: [total][a, b], indices in the part */
     size_t bytes;                             /* of the query, without ignored pairs */
-    size_t row, column;                       /* for division.h and order.h */
+    size_t row, column;                       /* for division.h and scene_run.c */
     struct scene_run *run;
     struct part_answers answers;
     bool done;       /* no more answers will come */

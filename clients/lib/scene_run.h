@@ -1,5 +1,6 @@
 /* Queries a scene: divides it into parts of one datagram (division.h), keeps several under way
- * (request.h), and delivers the answers in the order of the pairs (order.h). */
+ * (request.h), and delivers the answers in the order of the pairs: those to listed pairs at once,
+ * those to blocks when their row is complete. */
 #ifndef SCENE_RUN_H
 #define SCENE_RUN_H
 
@@ -11,12 +12,15 @@ struct scene_run {
     struct held *held;
     double within; /* time limit for a scene, seconds; 0: none */
     const struct fmb_scene *scene;
+    fmb_client_sink *sink;
+    void *user;
     struct division division;
-    int status;            /* not 0: the remaining pairs are given up with it */
-    int64_t until;         /* end of the time for the scene; clock_ns() */
-    uint64_t oldest, next; /* parts: first not delivered, first not begun */
-    bool has_next;         /* the next part is in its slot already */
-    bool divide_again;     /* the only part has to be divided: nothing is delivered */
+    struct part_answers *row; /* owned, [block_count]: the current row, by column */
+    int status;               /* not 0: the remaining pairs are given up with it */
+    int64_t until;            /* end of the time for the scene; clock_ns() */
+    uint64_t oldest, next;    /* parts: first not delivered, first not begun */
+    bool has_next;            /* the next part is in its slot already */
+    bool divide_again;        /* the only part has to be divided: nothing is delivered */
     struct part part[FMB_CLIENT_RAW_WINDOW]; /* [part % FMB_CLIENT_RAW_WINDOW] */
     /* Most pairs listed in a query, so that the queries under way are decided within half a
      * timeout; estimated from the compute times of results, for this method and want. */
