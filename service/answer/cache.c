@@ -67,15 +67,16 @@ struct id_set {
 struct cache {
     uint64_t bucket_multiplier, set_multiplier; /* odd, secret */
     int bucket_shift, set_shift;
-    int32_t *bucket;    /* [2^(64 - bucket_shift)]: first entry of each chain */
-    struct id_set *set; /* [2^(64 - set_shift)], in set_memory */
-    void *set_memory, *entry_memory;
-    struct cache_entry *entry; /* [frame_capacity + 1], in entry_memory */
+    int32_t *bucket;           /* [2^(64 - bucket_shift)]: first entry of each chain */
+    struct id_set *set;        /* [2^(64 - set_shift)] */
+    struct cache_entry *entry; /* [frame_capacity + 1] */
     unsigned char *slot;       /* [frame_capacity][SLOT_BYTES] */
     struct runs runs;          /* of slots */
     uint64_t *begins;          /* bit s: a body begins in slot s */
     struct hasher *hasher;
     struct cache_counts counts;
+    unsigned char *memory; /* owned: of all arrays */
+    size_t size;           /* of memory, bytes */
 };
 
 /* ---- Memory ---- */
@@ -99,32 +100,36 @@ static size_t set_count(const struct cache *cache)
     return (size_t) 1 << (64 - cache->set_shift);
 }
 
-/* Allocates count elements of size bytes, aligned to a cache line, zero and not touched. *memory:
- * the address to free. NULL: out of memory. */
-static void *allocate_zero_lines(size_t count, size_t size, void **memory)
+/* Takes count elements of size bytes, aligned to a cache line, from the memory. While it is not
+ * allocated, only adds up its size. */
+static void *take(struct cache *cache, size_t count, size_t size)
 {
-    *memory = calloc(count * size + LINE, 1);
-    return *memory ? (char *) *memory + (LINE - (uintptr_t) *memory % LINE) : NULL;
+    const size_t at = cache->size;
+    cache->size += (count * size + LINE - 1) / LINE * LINE;
+    return cache->memory ? cache->memory + at : NULL;
 }
 
-static size_t begins_count(const struct cache *cache)
-{
-    return (size_t) cache->counts.frame_capacity / 64 + 1;
-}
-
-/* Allocates the tables, for the frame capacity and the shifts that are set. All are empty. */
-static bool allocate(struct cache *cache)
+static void take_arrays(struct cache *cache)
 {
     const size_t frames = (size_t) cache->counts.frame_capacity;
-    cache->bucket = calloc(bucket_count(cache), sizeof *cache->bucket);
-    cache->set = allocate_zero_lines(set_count(cache), sizeof *cache->set, &cache->set_memory);
-    cache->entry = allocate_zero_lines(frames + 1, sizeof *cache->entry, &cache->entry_memory);
-    cache->slot = aligned_alloc(LINE, frames * SLOT_BYTES);
-    cache->runs.slot = calloc(frames, sizeof *cache->runs.slot);
-    cache->begins = calloc(begins_count(cache), sizeof *cache->begins);
+    cache->size = (size_t) - (uintptr_t) cache->memory % LINE;
+    cache->bucket = take(cache, bucket_count(cache), sizeof *cache->bucket);
+    cache->set = take(cache, set_count(cache), sizeof *cache->set);
+    cache->entry = take(cache, frames + 1, sizeof *cache->entry);
+    cache->slot = take(cache, frames, SLOT_BYTES);
+    cache->runs.slot = take(cache, frames, sizeof *cache->runs.slot);
+    cache->begins = take(cache, frames / 64 + 1, sizeof *cache->begins);
+}
+
+/* Allocates the arrays, for the frame capacity and the shifts that are set: zeros that are not
+ * touched. */
+static bool allocate(struct cache *cache)
+{
+    take_arrays(cache);
+    cache->memory = calloc(cache->size + LINE, 1);
+    take_arrays(cache);
     cache->hasher = hasher_create();
-    return cache->bucket && cache->set && cache->entry && cache->slot && cache->runs.slot &&
-           cache->begins && cache->hasher;
+    return cache->memory && cache->hasher;
 }
 
 struct cache *cache_create(size_t frames, const uint64_t secret[2])
@@ -152,40 +157,17 @@ void cache_destroy(struct cache *cache)
     if (!cache)
         return;
     hasher_destroy(cache->hasher);
-    free(cache->bucket);
-    free(cache->set_memory);
-    free(cache->entry_memory);
-    free(cache->slot);
-    free(cache->runs.slot);
-    free(cache->begins);
+    free(cache->memory);
     free(cache);
 }
 
 /* Writes to each page, since the system allocates a page when it is first written to. */
-static void touch_pages(void *memory, size_t size)
-{
-    enum { PAGE = 4096 };
-    volatile char *page = memory;
-    for (size_t at = 0; at < size; at += PAGE)
-        page[at] = page[at];
-}
-
 void cache_prefault(struct cache *cache)
 {
-    enum { TAKEN_MAX = 64 << 20 };
-    const size_t frames = (size_t) cache->counts.frame_capacity;
-    const size_t entry_bytes = (frames + 1) * sizeof *cache->entry;
-    const size_t slot_bytes = frames * SLOT_BYTES;
-    const size_t bucket_bytes = bucket_count(cache) * sizeof *cache->bucket;
-    const size_t set_bytes = set_count(cache) * sizeof *cache->set;
-    if (entry_bytes + slot_bytes + bucket_bytes + set_bytes > TAKEN_MAX)
-        return;
-    touch_pages(cache->entry, entry_bytes);
-    touch_pages(cache->slot, slot_bytes);
-    touch_pages(cache->bucket, bucket_bytes);
-    touch_pages(cache->set, set_bytes);
-    touch_pages(cache->begins, begins_count(cache) * sizeof *cache->begins);
-    touch_pages(cache->runs.slot, frames * sizeof *cache->runs.slot);
+    enum { TAKEN_MAX = 64 << 20, PAGE = 4096 };
+    volatile unsigned char *page = cache->memory;
+    for (size_t at = 0; at < cache->size && cache->size <= TAKEN_MAX; at += PAGE)
+        page[at] = page[at];
 }
 
 /* ---- Hashing ----
