@@ -181,17 +181,11 @@ static void charge(struct server *server, int client)
 
 /* ---- Activity ---- */
 
-/* Whether the client has a job or a query in the queue. */
-static bool has_work(const struct server *server, int client)
-{
-    const int64_t *waiting = queue_waiting(server->queue, client);
-    return server->jobs.of_client[client] || waiting[QUEUE_SHORT] || waiting[QUEUE_SCENES];
-}
-
-/* Makes a client that has work active, and any other idle. */
+/* Makes a client that has a job or a query in the queue active, and any other idle. */
 static void update_activity(struct server *server, int client)
 {
-    if (has_work(server, client))
+    const int64_t *waiting = queue_waiting(server->queue, client);
+    if (server->jobs.of_client[client] || waiting[QUEUE_SHORT] || waiting[QUEUE_SCENES])
         scheduler_activate(server->scheduler, client, server->bus_empty_ns, server->charged_ns);
     else
         scheduler_deactivate(server->scheduler, client, server->charged_ns);
@@ -322,12 +316,6 @@ static struct job *begin(struct server *server, const struct queue_datagram *que
     return jobs_take(jobs, query->client, (int) kind);
 }
 
-/* Whether there is work besides one job: another job, or a query in the queue. */
-static bool other_work_pending(const struct server *server)
-{
-    return server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0;
-}
-
 /* Steps a job for a turn, which ends with the first step that reaches job_turn_ns. */
 static void advance_job(struct server *server, struct job *job)
 {
@@ -341,8 +329,8 @@ static void advance_job(struct server *server, struct job *job)
     job->used_ns += turn_ns;
     if (complete)
         finish_job(server, job);
-    else if (job->used_ns > scene_limit_ns && other_work_pending(server) &&
-             answer_job_has_answers(job->answer))
+    else if (job->used_ns > scene_limit_ns && answer_job_has_answers(job->answer) &&
+             (server->jobs.free < JOBS - 1 || queue_counts(server->queue).datagrams > 0))
         stop_job(server, job);
 }
 

@@ -921,16 +921,12 @@ static bool skip_number(const char **at)
     return skip_digits(at) && !strchr("+-.eE", **at);
 }
 
-static bool is_unicode_escape(const char *at)
-{
-    return strspn(at + 2, "0123456789abcdefABCDEF") >= 4 && strncmp(at + 2, "0000", 4) != 0;
-}
-
 static bool skip_string(const char **at)
 {
     while (*++*at != '"') {
-        if ((unsigned char) **at < ' ' ||
-            ((*at)[0] == '\\' && (*at)[1] == 'u' && !is_unicode_escape(*at)))
+        const char *digits = strncmp(*at, "\\u", 2) == 0 ? *at + 2 : "0001";
+        if ((unsigned char) **at < ' ' || strncmp(digits, "0000", 4) == 0 ||
+            strspn(digits, "0123456789abcdefABCDEF") < 4)
             return false;
         *at += **at == '\\';
     }

@@ -21,14 +21,6 @@ static struct report_columns columns_for(const struct owned_scene *scene)
 
 /* ---- The beginning and the end of a scene ---- */
 
-static void begin_json(struct report_rows *rows)
-{
-    json_begin(&rows->printer.json, NULL, '{');
-    if (rows->scene->scene.label)
-        json_string(&rows->printer.json, "label", rows->scene->scene.label);
-    json_begin(&rows->printer.json, "pairs", '[');
-}
-
 /* Writes a label in parentheses; NULL: writes nothing. */
 static void put_label(FILE *out, const char *label)
 {
@@ -83,10 +75,14 @@ void report_begin_scene(struct report_rows *rows, struct owned_scene *scene)
     memset(rows->count, 0, sizeof rows->count);
     rows->near = rows->left_out = 0;
     rows->begun = false;
-    if (rows->printer.form == REPORT_JSON)
-        begin_json(rows);
-    else if (rows->printer.form == REPORT_TABLE && !rows->contacts)
+    if (rows->printer.form == REPORT_JSON) {
+        json_begin(&rows->printer.json, NULL, '{');
+        if (scene->scene.label)
+            json_string(&rows->printer.json, "label", scene->scene.label);
+        json_begin(&rows->printer.json, "pairs", '[');
+    } else if (rows->printer.form == REPORT_TABLE && !rows->contacts) {
         begin_table(rows);
+    }
 }
 
 void report_end_scene(struct report_rows *rows)
@@ -120,14 +116,6 @@ static struct report_row row_of(const struct report_rows *rows, const struct fmb
     };
 }
 
-static void copy_name(const struct fmb_placement *body, char out[QUERY_NAME_MAX + 1])
-{
-    if (body->name)
-        snprintf(out, QUERY_NAME_MAX + 1, "%s", body->name);
-    else
-        snprintf(out, QUERY_NAME_MAX + 1, "%" PRId64, body->id);
-}
-
 static void note_answer(struct report_rows *rows, const struct fmb_client_answer *of)
 {
     struct report_summary *summary = &rows->summary;
@@ -139,8 +127,12 @@ static void note_answer(struct report_rows *rows, const struct fmb_client_answer
     *summary = (struct report_summary){
         .all = of->answer.verdict, .first = rows->scenes, .gap = summary->gap};
     snprintf(summary->label, sizeof summary->label, "%s", scene->label ? scene->label : "");
-    copy_name(&scene->placements[of->a], summary->names[0]);
-    copy_name(&scene->placements[of->b], summary->names[1]);
+    for (int k = 0; k < 2; k++) {
+        const struct fmb_placement *body = &scene->placements[k ? of->b : of->a];
+        char id[NUMBER_TEXT_MAX];
+        snprintf(summary->names[k], sizeof summary->names[k], "%s",
+                 report_body(body->name, body->id, id));
+    }
 }
 
 void report_pair(struct report_rows *rows, const struct fmb_client_answer *of)

@@ -81,14 +81,6 @@ void report_names_json(struct json_writer *json, const char *const name[2])
     json_end(json, ']');
 }
 
-static void row_json(struct json_writer *json, const struct report_row *row)
-{
-    json_integer(json, "a", row->id[0]);
-    json_integer(json, "b", row->id[1]);
-    report_names_json(json, row->name);
-    report_answer_json(json, row->dim, row->names_frames, row->of);
-}
-
 /* ---- CSV ---- */
 
 void report_csv_begin(FILE *out)
@@ -205,23 +197,6 @@ static int widen(int *width, const char *text)
     return *width;
 }
 
-/* Writes the contact interval, such as "0.25 to 0.5 s". */
-static void contact_text(const struct fmb_answer *answer, char text[TEXT_MAX])
-{
-    char first[NUMBER_TEXT_MAX], last[NUMBER_TEXT_MAX];
-    number_ends(answer->contact[0], answer->contact[1], first, last);
-    snprintf(text, TEXT_MAX, "%s to %s s", first, last);
-}
-
-/* Writes one number if the bounds have the same digits. */
-static void gap_text(const struct fmb_gap *gap, char text[TEXT_MAX])
-{
-    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
-    number_short(gap->bounds[0], low);
-    number_short(gap->bounds[1], high);
-    snprintf(text, TEXT_MAX, strcmp(low, high) == 0 ? "%s" : "%s .. %s", low, high);
-}
-
 const char *report_point(int dim, const double *point, char text[REPORT_POINT_MAX])
 {
     char number[1 + FMB_DIM_MAX][NUMBER_TEXT_MAX];
@@ -250,18 +225,23 @@ static void text_answer(FILE *out, int dim, const struct fmb_answer *answer,
                         struct report_columns *columns)
 {
     char text[TEXT_MAX] = "", point[REPORT_POINT_MAX];
+    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     const bool beyond = answer->has_point || answer->has_box;
     const char *verdict = fmb_verdict_name((int) answer->verdict);
     if (!answer->has_contact && !answer->has_gap) {
         fputs(verdict, out);
         return;
     }
-    if (answer->has_contact)
-        contact_text(answer, text);
+    if (answer->has_contact) {
+        number_ends(answer->contact[0], answer->contact[1], low, high);
+        snprintf(text, TEXT_MAX, "%s to %s s", low, high);
+    }
     fprintf(out, "%-*s  %-*s", VERDICT_WIDTH, verdict,
             answer->has_gap || beyond ? widen(&columns->contact, text) : 0, text);
-    if (answer->has_gap) {
-        gap_text(&answer->gap, text);
+    if (answer->has_gap) { /* one number if both have the same digits */
+        number_short(answer->gap.bounds[0], low);
+        number_short(answer->gap.bounds[1], high);
+        snprintf(text, TEXT_MAX, strcmp(low, high) == 0 ? "%s" : "%s .. %s", low, high);
         fprintf(out, "  %-*s", beyond ? widen(&columns->gap, text) : 0, text);
     }
     if (answer->has_point) {
@@ -323,8 +303,12 @@ void report_row_print(struct report_printer *printer, int indent, const struct r
     } else if (printer->form == REPORT_CSV) {
         report_row_csv(printer->out, row);
     } else {
-        json_begin(&printer->json, NULL, '{');
-        row_json(&printer->json, row);
-        json_end(&printer->json, '}');
+        struct json_writer *json = &printer->json;
+        json_begin(json, NULL, '{');
+        json_integer(json, "a", row->id[0]);
+        json_integer(json, "b", row->id[1]);
+        report_names_json(json, row->name);
+        report_answer_json(json, row->dim, row->names_frames, row->of);
+        json_end(json, '}');
     }
 }

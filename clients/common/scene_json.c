@@ -149,14 +149,6 @@ static void write_body(struct json_writer *json, const struct fmb_placement *pla
     json_end(json, '}');
 }
 
-static void write_bodies(struct json_writer *json, const struct fmb_scene *scene)
-{
-    json_begin(json, "bodies", '[');
-    for (size_t i = 0; i < scene->placement_count; i++)
-        write_body(json, &scene->placements[i]);
-    json_end(json, ']');
-}
-
 static void write_pairs(struct json_writer *json, const struct fmb_placement *placements,
                         const char *key, const unsigned (*pair)[2], size_t count)
 {
@@ -196,7 +188,10 @@ void scene_json_write(FILE *out, struct owned_scene *owner)
     json_number(&json, "duration", scene->duration);
     if (scene->margin > 0)
         json_number(&json, "margin", scene->margin);
-    write_bodies(&json, scene);
+    json_begin(&json, "bodies", '[');
+    for (size_t i = 0; i < scene->placement_count; i++)
+        write_body(&json, &scene->placements[i]);
+    json_end(&json, ']');
     if (scene->which == FMB_PAIRS_LISTED)
         write_pairs(&json, scene->placements, "pairs", scene->pairs, scene->pair_count);
     if (scene->ignored_count > 0)

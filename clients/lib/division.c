@@ -44,14 +44,6 @@ int32_t division_ignored(struct division *division, const struct part *part, int
 
 /* ---- Blocks ---- */
 
-/* Whether the parts of the scene may be ALL or ACROSS. For slower methods pairs are listed, so that
- * the time that a query takes can be limited. */
-static bool uses_blocks(const struct fmb_scene *scene)
-{
-    return scene->which != FMB_PAIRS_LISTED &&
-           (!scene->method || scene->method == fmb_method_default());
-}
-
 /* Bytes of a query without placements and pairs. */
 static size_t bytes_without(const struct fmb_scene *scene)
 {
@@ -180,9 +172,11 @@ bool division_begin(const struct fmb_scene *scene, bool single, bool whole, stru
 {
     const size_t count = scene->placement_count;
     const size_t ignored = ignored_capacity(count, scene->ignored_count);
+    /* For slower methods pairs are listed, so that the time that a query takes can be limited. */
+    const bool fast = !scene->method || scene->method == fmb_method_default();
     *out = (struct division){.scene = scene,
                              .single = single,
-                             .blocks = !single && uses_blocks(scene),
+                             .blocks = !single && fast && scene->which != FMB_PAIRS_LISTED,
                              .at.listed = (size_t) scene->first_pair};
     out->body = calloc(count + 1, sizeof *out->body);
     out->ignored_memory = calloc(ignored + 1, sizeof *out->ignored_memory);

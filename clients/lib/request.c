@@ -270,14 +270,6 @@ static struct request *find(struct requests *requests, const struct request_resu
     return NULL;
 }
 
-static void pause_request(struct request *request)
-{
-    const int doublings = request->refusals < BUSY_DOUBLINGS ? request->refusals : BUSY_DOUBLINGS;
-    request->refusals++;
-    request->pausing = true;
-    request->deadline = clock_ns() + ns_per_ms * (BUSY_PAUSE_MS << doublings);
-}
-
 void requests_take(struct requests *requests, const struct request_result *result)
 {
     struct request *request = find(requests, result);
@@ -286,7 +278,11 @@ void requests_take(struct requests *requests, const struct request_result *resul
         adapt_to_spurious_repeat(&requests->pace[result->kind]);
     } else if (result->status == FMB_BUSY && request->refusals < BUSY_MAX) {
         note_received(requests, result->kind);
-        pause_request(request);
+        const int doublings =
+            request->refusals < BUSY_DOUBLINGS ? request->refusals : BUSY_DOUBLINGS;
+        request->refusals++;
+        request->pausing = true;
+        request->deadline = clock_ns() + ns_per_ms * (BUSY_PAUSE_MS << doublings);
     } else {
         const int64_t number = request->number;
         const enum request_taken taken = request->handler(request->user, request, result);

@@ -29,14 +29,6 @@ bool wire_is_point(const double *point, int count)
     return good;
 }
 
-static void set_witness(const double *witness, int dim, struct fmb_gap *out)
-{
-    out->has_witness = true;
-    out->time = witness[0];
-    for (int side = 0; side < 2; side++)
-        memcpy(out->witness[side], witness + 1 + side * dim, (size_t) dim * sizeof *witness);
-}
-
 /* Sets direction and witness of a gap whose bounds are set. Returns whether all its numbers are
  * consistent with the verdict. */
 static bool set_gap(unsigned char verdict, const double *direction, const double *witness, int dim,
@@ -56,7 +48,10 @@ static bool set_gap(unsigned char verdict, const double *direction, const double
     }
     if (!separated && are_none(witness, points))
         return verdict >= FMB_TOUCHING;
-    set_witness(witness, dim, out);
+    out->has_witness = true;
+    out->time = witness[0];
+    for (int side = 0; side < 2; side++)
+        memcpy(out->witness[side], witness + 1 + side * dim, (size_t) dim * sizeof *witness);
     return (separated || verdict == FMB_OVERLAPPING) && wire_is_point(witness, points);
 }
 

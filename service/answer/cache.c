@@ -95,11 +95,6 @@ static size_t bucket_count(const struct cache *cache)
     return (size_t) 1 << (64 - cache->bucket_shift);
 }
 
-static size_t set_count(const struct cache *cache)
-{
-    return (size_t) 1 << (64 - cache->set_shift);
-}
-
 /* Takes count elements of size bytes, aligned to a cache line, from the memory. While it is not
  * allocated, only adds up its size. */
 static void *take(struct cache *cache, size_t count, size_t size)
@@ -114,7 +109,7 @@ static void take_arrays(struct cache *cache)
     const size_t frames = (size_t) cache->counts.frame_capacity;
     cache->size = (size_t) - (uintptr_t) cache->memory % LINE;
     cache->bucket = take(cache, bucket_count(cache), sizeof *cache->bucket);
-    cache->set = take(cache, set_count(cache), sizeof *cache->set);
+    cache->set = take(cache, (size_t) 1 << (64 - cache->set_shift), sizeof *cache->set);
     cache->entry = take(cache, frames + 1, sizeof *cache->entry);
     cache->slot = take(cache, frames, SLOT_BYTES);
     cache->runs.slot = take(cache, frames, sizeof *cache->runs.slot);
@@ -281,14 +276,6 @@ static int32_t find_latest(const struct cache *cache, int64_t id, const struct b
     return same ? way[w].entry : NONE;
 }
 
-static void drop_latest(struct cache *cache, const struct latest *latest)
-{
-    if (is_live(cache, latest)) {
-        record_of(cache, latest->entry)->ids--;
-        cache->counts.ids--;
-    }
-}
-
 /* Makes the entry the latest of the id. */
 static void set_latest(struct cache *cache, int64_t id, int32_t e)
 {
@@ -296,7 +283,10 @@ static void set_latest(struct cache *cache, int64_t id, int32_t e)
     int w = way_of(way, id);
     if (w == WAYS)
         w = WAYS - 1;
-    drop_latest(cache, &way[w]);
+    if (is_live(cache, &way[w])) {
+        record_of(cache, way[w].entry)->ids--;
+        cache->counts.ids--;
+    }
     memmove(&way[1], &way[0], (size_t) w * sizeof *way);
     way[0] = (struct latest){id, e, cache->entry[e].generation};
     record_of(cache, e)->ids++;

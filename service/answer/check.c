@@ -132,11 +132,6 @@ static bool check_definition(struct check_context *context, const struct body_vi
     return true;
 }
 
-static bool check_name(struct check_context *context, const char *name)
-{
-    return !name || query_name_ok(name) || check_refuse(context, FMB_BAD_NAME, "name", NULL);
-}
-
 /* Whether the engine accepts these orientations. Its rules depend only on the dimension of the
  * body, so any body of that dimension will do. */
 static bool are_orientations(int dim, const struct fmb_placement *placed, int end_count)
@@ -192,7 +187,8 @@ bool check_placement(struct check_context *context, const struct query_placement
     return (query_by_handle(placement) ||
             (check_shapes(context, body) && check_numbers(context, body) &&
              check_sizes(context, body))) &&
-           check_name(context, placed->name) &&
+           (!placed->name || query_name_ok(placed->name) ||
+            check_refuse(context, FMB_BAD_NAME, "name", NULL)) &&
            check_finite(context, "position", placed->position, dim) &&
            check_orientation(context, dim, placed) &&
            (placement->velocity_count == 0 ||
