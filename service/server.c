@@ -276,8 +276,9 @@ static bool answer_short(struct server *server)
 {
     struct answer_job *answer = server->jobs.spare;
     const int64_t begin_ns = server->clock_ns();
-    bool complete = answer_job_step(answer, server->answerer);
-    if (!complete && !answer_job_is_short(answer, server->answerer))
+    bool complete =
+        answer_job_step(answer, server->answerer) || answer_job_step(answer, server->answerer);
+    if (!complete && !answer_job_is_short(answer))
         return false;
     while (!complete)
         complete = answer_job_step(answer, server->answerer);

@@ -76,10 +76,9 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
  * the query is complete or abandoned. Returns whether the result is complete. */
 bool answer_job_step(struct answer_job *job, struct answerer *answerer);
 
-/* Whether a pair query decides at most one pair of frames without hulls and radii. So does every
- * query with a handle that is not held. The remaining steps then take as long as that pair. On
- * input: as for answer_job_step(). */
-bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer);
+/* Whether the remaining steps decide only one pair of frames, without hulls and radii. On input: a
+ * pair query that two steps have not completed. */
+bool answer_job_is_short(const struct answer_job *job);
 
 /* Whether at least one pair of a scene has been answered. */
 bool answer_job_has_answers(const struct answer_job *job);

@@ -63,7 +63,7 @@ void answer_definition(struct answerer *answerer, const struct definition_query 
                        struct definition *result)
 {
     struct check_context context = {&result->head, false, -1};
-    answerer_begin_definition(answerer, &query->header, FMB_OK, result);
+    answerer_begin(answerer, &query->header, FMB_OK, &result->head, DEFINITION_HEAD_BYTES);
     if (check_definition_query(&context, query))
         append_bodies(answerer->cache, query, result);
 }

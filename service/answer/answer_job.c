@@ -281,7 +281,7 @@ static void begin_result(struct answer_job *job, const struct answerer *answerer
     if (job->is_pair)
         answerer_begin_pair(answerer, &job->pair, status, &job->pair_result);
     else
-        answerer_begin_scene(answerer, &job->query.header, status, &job->result);
+        answerer_begin(answerer, &job->query.header, status, &job->result.head, SCENE_HEAD_BYTES);
 }
 
 /* The stage CHECKING. No bodies are in use yet, so a refused query has none to release. The memory
@@ -311,20 +311,9 @@ static bool is_large(const struct fmb_body *body)
     return body->frame_count > 1 || body->one.shape == FMB_HULL || body->one.radius != 0;
 }
 
-bool answer_job_is_short(const struct answer_job *job, const struct answerer *answerer)
+bool answer_job_is_short(const struct answer_job *job)
 {
-    for (int32_t i = 0; job->is_pair && i < 2; i++) {
-        const struct body_view *body = &job->placements[i].body;
-        const struct cached *cached = query_by_handle(&job->placements[i])
-                                          ? cache_peek(answerer->cache, &body->handle)
-                                          : NULL;
-        struct geometry_reader reader = geometry_begin(body);
-        struct geometry_frame first;
-        if (body->frame_count > 1 || (cached && is_large(&cached->body)) ||
-            (geometry_next(&reader, &first) && (first.shape == FMB_HULL || first.radius != 0)))
-            return false;
-    }
-    return job->is_pair;
+    return job->is_pair && job->stage != ADDING && !job->in_steps;
 }
 
 static bool refuse_unknown(struct answer_job *job, int32_t i)

@@ -35,9 +35,8 @@ struct cache *answerer_cache(struct answerer *answerer)
 
 /* ---- Results ---- */
 
-/* Begins a result: size bytes from its head on. */
-static void begin(const struct answerer *answerer, const struct query_header *query,
-                  enum fmb_status status, struct result_head *out, size_t size)
+void answerer_begin(const struct answerer *answerer, const struct query_header *query,
+                    enum fmb_status status, struct result_head *out, size_t size)
 {
     memset(out, 0, size);
     out->header = *query;
@@ -50,21 +49,9 @@ static void begin(const struct answerer *answerer, const struct query_header *qu
 void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
                          enum fmb_status status, struct pair_result *result)
 {
-    begin(answerer, &query->header, status, &result->head, sizeof *result);
+    answerer_begin(answerer, &query->header, status, &result->head, sizeof *result);
     for (int f = 0; f < 2; f++)
         result->body_id[f] = query->placement[f].placed.id;
-}
-
-void answerer_begin_scene(const struct answerer *answerer, const struct query_header *query,
-                          enum fmb_status status, struct scene_result *result)
-{
-    begin(answerer, query, status, &result->head, offsetof(struct scene_result, unknown));
-}
-
-void answerer_begin_definition(const struct answerer *answerer, const struct query_header *query,
-                               enum fmb_status status, struct definition *result)
-{
-    begin(answerer, query, status, &result->head, offsetof(struct definition, body));
 }
 
 /* ---- Refusals ---- */
@@ -85,10 +72,11 @@ const char *answer_refused(struct answerer *answerer, enum answer_kind kind,
         answerer_begin_pair(answerer, &pair, status, &result);
         *out_size = wire_write_pair_result(&result, out);
     } else if (kind == ANSWER_SCENE) {
-        answerer_begin_scene(answerer, &pair.header, status, &answerer->scene);
+        answerer_begin(answerer, &pair.header, status, &answerer->scene.head, SCENE_HEAD_BYTES);
         *out_size = wire_write_scene_result(&answerer->scene, out);
     } else {
-        answerer_begin_definition(answerer, &pair.header, status, &answerer->definition);
+        answerer_begin(answerer, &pair.header, status, &answerer->definition.head,
+                       DEFINITION_HEAD_BYTES);
         *out_size = wire_write_definition(&answerer->definition, out);
     }
     return NULL;

@@ -12,13 +12,19 @@ struct answerer {
     struct definition definition;
 };
 
-/* Set all fields of a result except the contents of the arrays of a scene and a definition. With a
- * status other than FMB_OK, the detail is its text. */
+/* Bytes of the results of scenes and definitions without their arrays. */
+enum {
+    SCENE_HEAD_BYTES = offsetof(struct scene_result, unknown),
+    DEFINITION_HEAD_BYTES = offsetof(struct definition, body)
+};
+
+/* Sets `size` bytes of a result, from its head on: all but the head is 0. With a status other than
+ * FMB_OK, the detail is its text. */
+void answerer_begin(const struct answerer *answerer, const struct query_header *query,
+                    enum fmb_status status, struct result_head *out, size_t size);
+
+/* The same of a pair: also sets the ids of the bodies. */
 void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
                          enum fmb_status status, struct pair_result *result);
-void answerer_begin_scene(const struct answerer *answerer, const struct query_header *query,
-                          enum fmb_status status, struct scene_result *result);
-void answerer_begin_definition(const struct answerer *answerer, const struct query_header *query,
-                               enum fmb_status status, struct definition *result);
 
 #endif

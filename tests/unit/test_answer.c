@@ -794,7 +794,9 @@ static void a_radius_is_part_of_the_shape(void **state)
             static unsigned char message[QUERY_BYTES_MAX];
             assert_null(answer_job_begin(job, ANSWER_PAIR, message,
                                          wire_write_pair_query(&query, message)));
-            assert_int_equal(answer_job_is_short(job, answerer), radii[i] == 0);
+            answer_job_step(job, answerer);
+            const bool complete = answer_job_step(job, answerer);
+            assert_int_equal(complete || answer_job_is_short(job), radii[i] == 0);
             while (!answer_job_step(job, answerer))
                 ;
             const struct pair_result result = *answer_job_pair_result(job);
@@ -842,8 +844,8 @@ static void many_frames_take_many_steps(void **state)
     const size_t size = wire_write_pair_query(&query, message);
     assert_null(answer_job_begin(job, ANSWER_PAIR, message, size));
     memset(message, 0xa5, size); /* it was copied */
-    assert_false(answer_job_is_short(job, answerer));
     for (; !answer_job_step(job, answerer); steps++) {
+        assert_true(steps == 1 || !answer_job_is_short(job));
         const struct pair_query other = stretched(steps + 1); /* would evict the bodies */
         answer_pair(answerer, &other, &result);
         assert_int_equal(result.status, FMB_OK);
