@@ -108,7 +108,6 @@ struct request *request_begin(struct requests *requests, enum fmb_client_kind ki
     request->kind = kind;
     request->handler = handler;
     request->user = user;
-    request->earlier = -1;
     request->refusals = 0;
     request->charge = charge_of(bytes);
     requests->count++;
@@ -261,10 +260,8 @@ static struct request *find(struct requests *requests, const struct request_resu
 {
     for (int i = 0; i < FMB_CLIENT_RAW_WINDOW; i++) {
         struct request *request = &requests->request[i];
-        if (!request->under_way || request->kind != result->kind)
-            continue;
-        if (request->number == result->number ||
-            (request->earlier == result->number && result->status == FMB_OK))
+        if (request->under_way && request->kind == result->kind &&
+            request->number == result->number)
             return request;
     }
     return NULL;
@@ -284,7 +281,6 @@ void requests_take(struct requests *requests, const struct request_result *resul
         request->pausing = true;
         request->deadline = clock_ns() + ns_per_ms * (BUSY_PAUSE_MS << doublings);
     } else {
-        const int64_t number = request->number;
         const enum request_taken taken = request->handler(request->user, request, result);
         if (taken == REQUEST_MALFORMED) {
             requests->counts.malformed++;
@@ -293,7 +289,6 @@ void requests_take(struct requests *requests, const struct request_result *resul
         measure(&requests->pace[request->kind], request);
         note_received(requests, request->kind);
         requests->counts.answered++;
-        request->earlier = taken == REQUEST_WHOLE ? number : -1;
         if (taken == REQUEST_COMPLETE)
             request_end(requests, request);
         else

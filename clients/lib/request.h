@@ -46,10 +46,7 @@ struct request_result {
 enum request_taken {
     REQUEST_MALFORMED, /* it does not match the query, and is ignored */
     REQUEST_COMPLETE,
-    REQUEST_NEXT, /* the handler has written another query into the request, to be sent */
-    /* Like NEXT, but the other query is the same one with frames in place of handles. A result of
-     * the first query with status OK, from another service, is accepted too. */
-    REQUEST_WHOLE
+    REQUEST_NEXT /* the handler has written another query into the request, to be sent */
 };
 
 /* Bytes at the start of each query: fingerprint, utime, and the ids that this module writes. */
@@ -68,9 +65,8 @@ struct request {
     void *user;
     fmb_client_raw_sink *raw_sink; /* of a raw query */
     int64_t number;                /* sequence number */
-    int64_t earlier;    /* number of the query that this one repeats with frames; -1: none */
-    int64_t first_at;   /* time of first sending; times are those of clock_ns() */
-    int64_t sent_at;    /* time of last sending */
+    int64_t first_at;              /* time of first sending; times are those of clock_ns() */
+    int64_t sent_at;               /* time of last sending */
     int64_t pending_at; /* time of the first sending that is not known to be lost or refused */
     int64_t deadline;   /* time to send it again, or to give it up */
     int64_t give_up_at; /* time to give it up at the latest */

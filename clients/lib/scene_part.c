@@ -200,7 +200,6 @@ static size_t write_scene(struct part *part, unsigned char *out)
 static bool write_query(struct part *part, struct request *request)
 {
     struct fmb_client_counts *counts = &part->run->requests->counts;
-    memcpy(part->whole_earlier, part->whole, sizeof part->whole);
     part->defining = false;
     request->size = (part->single ? write_pair : write_scene)(part, request->query);
     for (int32_t i = 0; i < part->placement_count && request->size > 0; i++) {
@@ -214,8 +213,7 @@ static bool write_query(struct part *part, struct request *request)
 
 /* A result has the handles of the bodies that were sent whole, which the service then holds.
  * Returns false if its handles are others. */
-static bool take_handles(const struct part *part, const bool *whole,
-                         const struct request_result *result)
+static bool take_handles(const struct part *part, const struct request_result *result)
 {
     static const struct handle none;
     const bool pair = result->kind == FMB_CLIENT_PAIR;
@@ -223,7 +221,7 @@ static bool take_handles(const struct part *part, const bool *whole,
     const int32_t count = pair ? 2 : result->scene->handle_count;
     int32_t used = 0;
     for (int32_t i = 0; i < part->placement_count; i++) {
-        struct held_body *body = whole[i] ? entry_of(part, i) : NULL;
+        struct held_body *body = part->whole[i] ? entry_of(part, i) : NULL;
         if (!body && !pair) /* results of scenes have no handle for it */
             continue;
         if (used == count || !handle_equal(body ? &body->handle : &none, &handle[used++]))
@@ -429,11 +427,10 @@ static void adapt_pairs(struct scene_run *run, int32_t pairs, int64_t compute_ns
         run->pairs_max = PAIRS_LEAST;
 }
 
-static enum request_taken write_next(struct part *part, struct request *request,
-                                     enum request_taken taken)
+static enum request_taken write_next(struct part *part, struct request *request)
 {
     if (write_query(part, request))
-        return taken;
+        return REQUEST_NEXT;
     part->run->divide_again = part->run->division.by_handle;
     return refuse(part, FMB_OVER_LIMIT, "the bodies of a pair do not fit into one datagram");
 }
@@ -443,13 +440,12 @@ static enum request_taken take_answers(struct part *part, struct request *reques
 {
     struct scene_run *run = part->run;
     struct part_answers *answers = &part->answers;
-    const bool *whole = result->number == request->number ? part->whole : part->whole_earlier;
     const int32_t before = answers->answered;
-    if (!take_handles(part, whole, result))
+    if (!take_handles(part, result))
         return REQUEST_MALFORMED;
-    if (part->defining && result->number == request->number) {
+    if (part->defining) {
         const bool empty = result->scene->end_pair == 0 && result->scene->verdict_count == 0;
-        return empty ? write_next(part, request, REQUEST_NEXT) : REQUEST_MALFORMED;
+        return empty ? write_next(part, request) : REQUEST_MALFORMED;
     }
     const bool pair = result->kind == FMB_CLIENT_PAIR;
     if (!(pair ? fits_pair(part, result->pair) : fits_scene(part, result->scene)))
@@ -461,7 +457,7 @@ static enum request_taken take_answers(struct part *part, struct request *reques
     part->done = answers->answered == part->total;
     if (part->done)
         return REQUEST_COMPLETE;
-    return write_next(part, request, REQUEST_NEXT);
+    return write_next(part, request);
 }
 
 enum request_taken part_take(void *user, struct request *request,
@@ -482,7 +478,7 @@ enum request_taken part_take(void *user, struct request *request,
     if (!take_unknown(part, result))
         return REQUEST_MALFORMED;
     part->unknown++;
-    return write_next(part, request, REQUEST_WHOLE);
+    return write_next(part, request);
 }
 
 void part_begin(struct scene_run *run, struct part *part, size_t bytes)
@@ -496,7 +492,7 @@ void part_begin(struct scene_run *run, struct part *part, size_t bytes)
         return;
     struct request *request = request_begin(
         run->requests, part->single ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE, bytes, part_take, part);
-    if (write_next(part, request, REQUEST_NEXT) == REQUEST_NEXT)
+    if (write_next(part, request) == REQUEST_NEXT)
         request_send(run->requests, request);
     else
         request_end(run->requests, request);

@@ -41,12 +41,11 @@ struct part {
     size_t row, column;                       /* for division.h and scene_run.c */
     struct scene_run *run;
     struct part_answers answers;
-    bool done;       /* no more answers will come */
-    bool defining;   /* the last query only has bodies */
-    int definitions; /* number of such queries */
-    int unknown;     /* number of results with status UNKNOWN_BODY */
-    /* [in the part]: sent with frames in the last query, and in the one before it. */
-    bool whole[QUERY_PLACEMENTS_MAX], whole_earlier[QUERY_PLACEMENTS_MAX];
+    bool done;                        /* no more answers will come */
+    bool defining;                    /* the last query only has bodies */
+    int definitions;                  /* number of such queries */
+    int unknown;                      /* number of results with status UNKNOWN_BODY */
+    bool whole[QUERY_PLACEMENTS_MAX]; /* [in the part]: sent with frames in the last query */
 };
 
 /* The numbers of the pairs of a part that is ALL or ACROSS. */

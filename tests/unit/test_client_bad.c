@@ -999,41 +999,6 @@ static void an_answer_counts_more_than_an_unknown_body(void **state)
     assert_int_equal(relay_dropped(test.relay), 0);
 }
 
-/* The second service never holds anything, and its refusal comes first: the answer of the other to
- * the query by handle is taken. */
-static void holds_nothing(struct pair_result *result, int turn)
-{
-    static const struct handle none;
-    if (turn % 2 == 0)
-        return;
-    result->status = FMB_UNKNOWN_BODY;
-    result->handle[0] = result->handle[1] = none;
-    result->method = 0;
-    result->dim = 0;
-    memset(&result->answer, 0, sizeof result->answer);
-}
-
-/* Whole, and by handle: the query that is sent whole after that gets no result at all. */
-static void hear_two(struct relay *relay)
-{
-    relay->deaf = relay->queries > 2;
-}
-
-static void a_late_answer_to_the_query_by_handle_is_taken(void **state)
-{
-    struct fmb_client_answer answer;
-    relay_start(2000, 30, 1);
-    relay_draw(placement, 2, 3, 1, 1, 1);
-    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
-    relay_add_service(test.relay, 2000);
-    test.relay->pair_lie = holds_nothing;
-    test.relay->queries = 1;
-    test.relay->before = hear_two;
-    assert_int_equal(fmb_client_query_pair(test.client, placement, 1, 0, &answer), FMB_OK);
-    assert_int_equal(answer.status, FMB_OK);
-    assert_int_equal(relay_dropped(test.relay), 0);
-}
-
 static void another_pair_handle(struct pair_result *result, int turn)
 {
     (void) turn;
@@ -1315,7 +1280,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(unknown_bodies_for_ever_are_sent_whole),
         cmocka_unit_test(unknown_bodies_one_by_one_are_sent_whole),
         RELAY_TEST(an_answer_counts_more_than_an_unknown_body),
-        RELAY_TEST(a_late_answer_to_the_query_by_handle_is_taken),
         cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
         cmocka_unit_test(bodies_are_kept_until_the_table_is_full),
         RELAY_TEST(second_results_are_ignored),
