@@ -31,20 +31,6 @@ load service
     [ $((${EPOCHREALTIME/./} - begin)) -lt $((2000000 + 10 * pace)) ]
 }
 
-@test "a client that queries before the service starts gets its answers" {
-    random_scene 2 20 > "$BATS_TEST_TMPDIR/scene.json"
-    log=$BATS_TEST_TMPDIR/log messages=$BATS_TEST_TMPDIR/messages report=$BATS_TEST_TMPDIR/report
-    start_record "$log"
-    "$FMB" query --json --timeout 0.2 --retries 50 "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus" 3>&- &
-    client=$!
-    started="${started-} $client"
-    wait_until grep -qa FMB_SCENE_QUERY "$log"
-    start_fmbd
-    wait $client
-    "$FMB" query --json --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
-    stop_fmbd
-}
-
 @test "no answer is lost when the service dies and restarts" {
     random_scene 3 100 > "$BATS_TEST_TMPDIR/scene.json"
     start_fmbd
@@ -81,16 +67,6 @@ load service
 }
 
 # bats test_tags=release
-@test "without a service, only the first of many scenes takes a timeout" {
-    random_scene 2 3 1 200 > "$BATS_TEST_TMPDIR/scenes.json"
-    run --separate-stderr timeout 60 "$FMB" query --json --timeout 0.5 --retries 1 "$BATS_TEST_TMPDIR/scenes.json"
-    [ "$status" = 1 ]
-    [ "${#lines[@]}" = 1 ]
-    jq -e '.pairs | length == 3 and all(.error == "no fmbd answered")' <<< "$output"
-    grep -q 'no fmbd answered .* within 1 s, and none sends a heartbeat: later scenes are not answered$' <<< "$stderr"
-}
-
-# bats test_tags=release
 @test "a query continues when the service starts late, and when it is restarted" {
     random_scene 2 3 1 40 > "$BATS_TEST_TMPDIR/scenes.json"
     "$FMB" query --json --local "$BATS_TEST_TMPDIR/scenes.json" > "$BATS_TEST_TMPDIR/local"
@@ -118,23 +94,6 @@ load service
     [ $line -le 40 ]
     exec 5>&-
     wait $client || [ $? = 1 ]
-    stop_fmbd
-}
-
-@test "with capacity for one frame every answer is right" {
-    start_fmbd --frames 1
-    random_scene 3 20 > "$BATS_TEST_TMPDIR/scene.json"
-    "$FMB" query --json --box "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
-    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
-    # The first body stays while a scene uses it; there is no space for the others.
-    "$FMB" status --json > "$BATS_TEST_TMPDIR/status"
-    [ "$(jq .server_id "$BATS_TEST_TMPDIR/status")" = "$("$FMB" status | sed -n '1s/.*server \([0-9-]*\),.*/\1/p')" ]
-    jq -e '.utime / 1000000 - now | fabs < 60' "$BATS_TEST_TMPDIR/status"
-    jq -e '.bodies == 1 and .misses == 1 + 19 * .scenes and .evictions == 0' "$BATS_TEST_TMPDIR/status"
-    "$FMB" query --json --certificate "$BATS_TEST_TMPDIR/scene.json" > "$BATS_TEST_TMPDIR/bus"
-    "$FMB" query --json --certificate --local "$BATS_TEST_TMPDIR/scene.json" | cmp - "$BATS_TEST_TMPDIR/bus"
-    # All but the first and the last are the first of some single pair.
-    [ "$(status_of evictions)" -ge 18 ]
     stop_fmbd
 }
 
@@ -238,21 +197,6 @@ load service
 }
 
 # bats test_tags=release
-@test "heartbeats are sent while queries arrive faster than they are answered" {
-    start_fmbd
-    "$TOOLS/fake-peer" flood scene_query 101 60 > /dev/null 3>&- &
-    flood=$!
-    started="$started $flood"
-    is_flooded() { [ "$(status_of received)" -gt 1000 ]; }
-    wait_until is_flooded
-    for _ in 1 2 3; do
-        "$FMB" status > /dev/null
-    done
-    kill $flood
-    stop_fmbd
-}
-
-# bats test_tags=release
 @test "without a route for multicast the daemon prints the command that adds one" {
     unshare -rn true || skip "needs a network without routes"
     run unshare -rn "$FMBD" --lcm-url udpm://239.8.7.6:7667
@@ -303,12 +247,6 @@ load service
     stop_fmbd
     fmbd=$one
     stop_fmbd
-}
-
-@test "a bus without a port is refused at once" {
-    run timeout 5 "$FMBD" --lcm-url udpm://239.255.76.67
-    [ "$status" = 1 ]
-    [[ "$output" == *"udpm://239.255.76.67:7667"* ]]
 }
 
 @test "wrong options are refused with exit code 2 and a hint; help and version exit with 0" {

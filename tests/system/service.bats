@@ -56,29 +56,6 @@ shared='{"label": "mesh \u20ac", "dim": 3, "bodies": [
     {"id": 5, "group": -1, "shape": "face", "position": [-3,0,0], "vertices": [[0,0,0],[1,0,0],[0,1,0]]},
     {"id": 6, "group": 7, "shape": "box", "size": [3,3,3], "position": [1e10,1,0]}]}'
 
-@test "vertices, groups, labels and frames of gaps: the bus gives the answers of --local" {
-    start_fmbd
-    for options in '' --gap '--gap --box --point' --certificate; do
-        # The bodies of the second scene go by handle. Pairs within the group: 2 and 4, 2 and 6, 4 and 6.
-        echo "$shared $shared" > "$BATS_TEST_TMPDIR/scenes.json"
-        # shellcheck disable=SC2086
-        same_answers $options "$BATS_TEST_TMPDIR/scenes.json"
-        holds -s "$BATS_TEST_TMPDIR/bus" 'length == 2' \
-            'all(.[]; keys_unsorted[0] == "label" and .label == "mesh €")' \
-            'all(.[]; [.pairs[] | select(([.a, .b] - [2, 4, 6]) == [])] == [])'
-    done
-    stop_fmbd
-}
-
-@test "a gap names its frames where a body has several" {
-    "$FMB" query --json --gap --local <<< "$shared" > "$BATS_TEST_TMPDIR/local"
-    holds "$BATS_TEST_TMPDIR/local" '[.pairs[] | select(.frames) | .a, .b] | unique | contains([3])' \
-        '[.pairs[] | select((.a == 3 or .b == 3) == has("frames"))] | length == 12' \
-        '[.pairs[] | select(.a == 1 and .b == 3)] | length == 1 and (.[0] | .verdict == "touching" and .gap == [0, 0] and .frames == [0, 1])' \
-        '[.pairs[] | select(.a == 3 and .b == 4) | .frames[1]] == [0]' \
-        '[.pairs[] | select(.a == 1 and .b == 2) | .verdict] == ["touching"]'
-}
-
 # grid_scene DIM MOVING: unit cuboids and the corners cut off such ones, on halves, so that all
 # verdicts occur.
 grid_scene() {
@@ -116,35 +93,6 @@ grid_scenes() {
         'all(.[].pairs[]; .verdict as $verdict | .certificate | startswith($verdict))'
     for dim in 2 3; do random_scene $dim 30; done > "$BATS_TEST_TMPDIR/scenes.json"
     same_answers --certificate --box "$BATS_TEST_TMPDIR/scenes.json"
-    stop_fmbd
-}
-
-@test "the bus gives the gaps of --local, for all verdicts, at rest and moving" {
-    start_fmbd
-    grid_scenes > "$BATS_TEST_TMPDIR/all.json"
-    sed 's/{/{"margin":0.75,/' "$BATS_TEST_TMPDIR/all.json" > "$BATS_TEST_TMPDIR/near.json"
-    for options in '--gap all' '--gap --box --certificate --point all' '--box near' '--gap near' '--certificate near'; do
-        # shellcheck disable=SC2086
-        same_answers ${options% *} "$BATS_TEST_TMPDIR/${options##* }.json"
-        case $options in
-        --gap*) expected='. == 66' ;;
-        *) expected='. > 10 and . < 66' ;;
-        esac
-        holds -s "$BATS_TEST_TMPDIR/bus" "length == 4 and all(.[]; [.pairs[] | select(.gap)] | length | $expected)"
-    done
-    "$FMB" query --gap --method sat --json "$BATS_TEST_TMPDIR/all.json" > "$BATS_TEST_TMPDIR/bus" || [ $? = 1 ]
-    holds -s "$BATS_TEST_TMPDIR/bus" '[.[].pairs[].error] | unique == ["method: gives no gaps"]'
-    stop_fmbd
-}
-
-@test "a certificate of many digits passes over the bus" {
-    start_fmbd
-    echo '{"dim": 2, "duration": 1e-300, "bodies": [
-        {"id": 1, "shape": "cuboid", "origin": [0,0], "components": [[1,0],[0,1]]},
-        {"id": 2, "shape": "cuboid", "origin": [-3,0.3], "velocity": [4e300,0],
-         "components": [[1,0],[0,1]]}]}' > "$BATS_TEST_TMPDIR/scene.json"
-    same_answers --certificate "$BATS_TEST_TMPDIR/scene.json"
-    [ "$(jq '.pairs[0].certificate | length' "$BATS_TEST_TMPDIR/bus")" -gt 300 ]
     stop_fmbd
 }
 
@@ -239,42 +187,6 @@ parts='def parts: unique_by(.end_pair) | map(.pairs) | add; '
     stop_fmbd
 }
 
-# bats test_tags=release
-@test "pairs listed, in any order and more than once, give the answers of --local" {
-    start_fmbd
-    for dim in 2 3; do random_scene $dim 60; done |
-        jq -c '.pairs = [range(3000) | [. % 60 + 1, (. * 7 + (. / 60 | floor)) % 60 + 1] | select(.[0] != .[1])]' > "$BATS_TEST_TMPDIR/scenes.json"
-    for options in '' --box '--method sat' '--method exact'; do
-        # shellcheck disable=SC2086
-        same_answers $options "$BATS_TEST_TMPDIR/scenes.json"
-        [ "$(grep -o '"a": ' "$BATS_TEST_TMPDIR/bus" | wc -l)" -gt 5800 ]
-    done
-    stop_fmbd
-}
-
-@test "a scene of more bodies than a datagram holds gives the answers of --local" {
-    start_fmbd
-    random_scene 3 700 | jq -c '.bodies |= map(.origin |= map(. * 4))' > "$BATS_TEST_TMPDIR/scene.json"
-    same_answers --box "$BATS_TEST_TMPDIR/scene.json"
-    [ "$(status_of pairs)" -ge 244650 ] # a slow machine repeats queries
-    stop_fmbd
-}
-
-@test "clients at the same time get each its own answers" {
-    start_fmbd
-    pids=
-    for client in 1 2 3 4; do
-        random_scene 3 30 $client > "$BATS_TEST_TMPDIR/scene.$client"
-        "$FMB" query --box --json "$BATS_TEST_TMPDIR/scene.$client" > "$BATS_TEST_TMPDIR/bus.$client" 3>&- &
-        pids="$pids $!"
-    done
-    for pid in $pids; do wait "$pid"; done
-    for client in 1 2 3 4; do
-        "$FMB" query --box --json --local "$BATS_TEST_TMPDIR/scene.$client" | cmp - "$BATS_TEST_TMPDIR/bus.$client"
-    done
-    stop_fmbd
-}
-
 @test "damaged messages on every channel are counted, and harm neither service nor clients" {
     start_fmbd
     start_watch
@@ -361,29 +273,6 @@ send_crash_packets() {
     [ "$(status_of foreign)" -ge 100 ]
     kill -0 $watch
     stop_fmbd
-}
-
-# bats test_tags=release
-@test "on a quiet bus the datagrams of other channels are the results of the service" {
-    start_fmbd
-    random_scene 2 3 | "$FMB" query --json > /dev/null
-    for _ in 1 2 3; do status_of foreign > "$BATS_TEST_TMPDIR/foreign"; done
-    [ "$(cat "$BATS_TEST_TMPDIR/foreign")" = "$(status_of answered)" ]
-    stop_fmbd
-}
-
-@test "the service starts beside packets that crash liblcm" {
-    ( while :; do send_crash_packets; done ) 3>&- &
-    started="${started-} $!"
-    # Each query is a start of its own, and waits for no heartbeat.
-    random_scene 2 2 > "$BATS_TEST_TMPDIR/scene.json"
-    starts='1 2 3 4 5 6 7 8'
-    [ -z "${FMB_FAST-}" ] || starts='1 2'
-    for _ in $starts; do
-        start_fmbd
-        for _ in 1 2 3 4 5; do "$FMB" query "$BATS_TEST_TMPDIR/scene.json" > /dev/null; done
-        stop_fmbd
-    done
 }
 
 @test "the pairs of the campaigns get the answers of libfmb, and their recording replays the same" {

@@ -242,19 +242,6 @@ static void a_handle_of_the_other_dimension_is_refused(void **state)
     expect(&query, FMB_WRONG_DIMENSION, "b.dim: not that of the body with this handle");
 }
 
-/* With capacity for two: keeping a third body evicts the one not used longest. */
-static void evicted_bodies_are_unknown(void **state)
-{
-    struct pair_query query = stretched(2);
-    const struct pair_result first = answer_to(&query);
-    query = stretched(3);
-    answer_to(&query);
-    name(&query.placement[0], &first.handle[0]);
-    assert_int_equal(answer_to(&query).status, FMB_OK);
-    name(&query.placement[1], &first.handle[1]);
-    expect(&query, FMB_UNKNOWN_BODY, "b.handle: not held; send the frames");
-}
-
 /* With capacity for one, the second body of a query does not evict the first, which is in use, but
  * is made for this query alone. */
 static void a_cache_of_one_frame_answers_whole_pairs(void **state)
@@ -816,23 +803,6 @@ static void a_radius_is_part_of_the_shape(void **state)
     assert_int_equal(counts().frames, 2);
 }
 
-/* A turned body is the same body. */
-static void turning_bodies_hit(void **state)
-{
-    struct pair_query query = cubes();
-    for (int i = 0; i < 10; i++) {
-        query.placement[1].placed.orientation_count = 4;
-        query.placement[1].placed.orientation[0] = 1;
-        query.placement[1].placed.orientation[1] = 0.1 * i;
-        const struct pair_result result = answer_to(&query);
-        assert_int_equal(result.status, FMB_OK);
-        const struct fmb_answer expected = truth(&query);
-        assert_memory_equal(&result.answer, &expected, sizeof expected);
-    }
-    assert_int_equal(counts().misses, 1);
-    assert_int_equal(counts().hits, 19);
-}
-
 /* A pair of many frames takes many steps, between which other queries are answered. */
 static void many_frames_take_many_steps(void **state)
 {
@@ -886,32 +856,6 @@ static void bodies_of_several_frames_have_no_certificate(void **state)
     expect(&query, FMB_UNKNOWN_BODY, "b.handle: not held; send the frames");
 }
 
-/* A body that the cache has no memory for is answered all the same, and its handle is right. */
-static void a_body_larger_than_the_cache_is_answered(void **state)
-{
-    const struct pair_query query = gratings(40, 2, 0.5);
-    const struct fmb_answer expected = truth(&query);
-    const struct pair_result result = answer_to(&query);
-    assert_int_equal(result.status, FMB_OK);
-    assert_memory_equal(&result.answer, &expected, sizeof expected);
-    assert_false(handle_is_none(&result.handle[0]));
-    assert_int_equal(counts().bodies, 0);
-}
-
-static void refused_without_being_read(void **state)
-{
-    const struct pair_query query = cubes();
-    struct pair_result result;
-    memset(&result, 0xa5, sizeof result);
-    answer_pair_refused(answerer, &query, FMB_BUSY, &result);
-    assert_int_equal(result.status, FMB_BUSY);
-    assert_string_equal(result.detail, "busy");
-    assert_int_equal(result.client_id, 4);
-    assert_int_equal(result.server_id, 99);
-    assert_int_equal(result.answer.verdict, 0);
-    assert_null(result.certificate);
-}
-
 static bool certified(const struct pair_query *query, const struct pair_result *result)
 {
     static struct query_bodies own[2];
@@ -960,17 +904,6 @@ static void certificates_are_given_on_request(void **state)
     }
 }
 
-/* Of a body that comes by handle too. */
-static void bodies_by_handle_have_certificates(void **state)
-{
-    struct pair_query query = cubes();
-    query.want = FMB_WANT_CERTIFICATE;
-    struct pair_query by_handle = query;
-    name(&by_handle.placement[1], &answer_to(&query).handle[1]);
-    struct pair_result result = answer_to(&by_handle);
-    assert_true(certified(&query, &result));
-}
-
 /* The body is kept all the same, and its handle known. */
 static void inexact_methods_do_not_decide_flat_frames(void **state)
 {
@@ -1007,16 +940,6 @@ static void gaps_and_points_are_given_on_request(void **state)
     }
 }
 
-static void a_repeat_gets_the_same(void **state)
-{
-    struct pair_query query = cubes();
-    query.want = FMB_WANT_BOX;
-    query.placement[0].velocity_count = 3;
-    memcpy(query.placement[0].placed.velocity, (const double[]){0.1, 0.7, 3}, 3 * sizeof(double));
-    struct pair_result first = answer_to(&query), second = answer_to(&query);
-    assert_memory_equal(&first, &second, sizeof first);
-}
-
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -1026,7 +949,6 @@ int main(void)
         TEST(handles_stand_for_frames),
         TEST(unknown_handles_are_refused),
         TEST(a_handle_of_the_other_dimension_is_refused),
-        TEST(evicted_bodies_are_unknown),
         cmocka_unit_test_setup_teardown(a_cache_of_one_frame_answers_whole_pairs, set_up_one,
                                         tear_down),
         TEST(one_id_may_have_two_bodies),
@@ -1045,22 +967,17 @@ int main(void)
         cmocka_unit_test_setup_teardown(bodies_of_several_frames_are_answered, set_up_many,
                                         tear_down),
         TEST(a_radius_is_part_of_the_shape),
-        TEST(turning_bodies_hit),
         cmocka_unit_test_setup_teardown(many_frames_take_many_steps, set_up_many, tear_down),
         TEST(a_job_that_is_stopped),
         cmocka_unit_test_setup_teardown(bodies_of_several_frames_have_no_certificate, set_up_many,
                                         tear_down),
-        TEST(a_body_larger_than_the_cache_is_answered),
         TEST(bad_ends_are_refused),
         cmocka_unit_test_setup_teardown(ends_are_answered, set_up_many, tear_down),
         TEST(bad_radii_are_refused),
         TEST(bad_requests_are_refused),
-        TEST(refused_without_being_read),
         TEST(certificates_are_given_on_request),
-        TEST(bodies_by_handle_have_certificates),
         TEST(inexact_methods_do_not_decide_flat_frames),
         TEST(gaps_and_points_are_given_on_request),
-        TEST(a_repeat_gets_the_same),
     };
     return cmocka_run_group_tests_name("answer", tests, NULL, NULL);
 }

@@ -1105,48 +1105,6 @@ static void second_results_are_ignored(void **state)
 
 /* ---- The process ---- */
 
-/* LCM's own receiver, which uses select(2), aborts there. */
-static void many_open_descriptors_do_not_matter(void **state)
-{
-    enum { COUNT = 1100 };
-    static int fd[COUNT];
-    struct rlimit limit;
-    assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
-    limit.rlim_cur = limit.rlim_max < 2 * COUNT ? limit.rlim_max : 2 * COUNT;
-    if (limit.rlim_cur < 2 * COUNT || setrlimit(RLIMIT_NOFILE, &limit) != 0)
-        skip();
-    relay_open(test.relay, 2000);
-    for (int i = 0; i < COUNT; i++)
-        assert_true((fd[i] = dup(STDERR_FILENO)) >= 0);
-    test.client = relay_client(test.relay, 5, 1);
-    const struct fmb_scene scene = listed();
-    relay_query(test.client, &scene);
-    assert_true(fmb_client_fileno(test.client) > 1024);
-    for (int i = 0; i < COUNT; i++)
-        close(fd[i]);
-}
-
-static void a_child_that_closes_harms_nothing(void **state)
-{
-    struct relay *relay = relay_new();
-    int status;
-    relay_open(relay, 2000);
-    struct fmb_client *client = relay_client(relay, 5, 1);
-    const struct fmb_scene scene = listed();
-    relay_query(client, &scene);
-    const pid_t child = fork();
-    if (child == 0) {
-        fmb_client_close(client);
-        _exit(0);
-    }
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_int_equal(status, 0);
-    relay_query(client, &scene);
-    assert_int_equal(relay_dropped(relay), 0);
-    fmb_client_close(client);
-    relay_close(relay);
-}
-
 /* ---- Callbacks ---- */
 
 struct within {
@@ -1283,8 +1241,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
         cmocka_unit_test(bodies_are_kept_until_the_table_is_full),
         RELAY_TEST(second_results_are_ignored),
-        RELAY_TEST(many_open_descriptors_do_not_matter),
-        cmocka_unit_test(a_child_that_closes_harms_nothing),
         RELAY_TEST(no_call_within_a_callback),
         RELAY_TEST(a_watcher_sees_heartbeats),
         cmocka_unit_test(wrong_options_are_refused),

@@ -762,29 +762,6 @@ static void bodies_go_by_handle_the_second_time(void **state)
     close_world(&world);
 }
 
-/* Another client gives the ids to other bodies: neither has to send anything again. */
-static void equal_ids_of_two_clients_do_not_matter(void **state)
-{
-    struct world world;
-    open_world(&world, 1000);
-    query_world(&world);
-    struct fmb_client *other = relay_client(world.relay, 5, 1);
-    struct fmb_placement *others = frames_of(10, 3, 5, 41);
-    for (int i = 0; i < 10; i++)
-        others[i].body = relay_change(others[i].body, 3, 7);
-    const struct fmb_scene scene = scene_of(others, 10, FMB_PAIRS_ALL, ALL_WANTS);
-    relay_query(other, &scene);
-    const struct fmb_client_counts counts = query_world(&world);
-    assert_int_equal(counts.queries, 1);
-    assert_int_equal(counts.by_handle, 100);
-    assert_int_equal(counts.whole, 0);
-    relay_query(other, &scene);
-    assert_int_equal(relay_counts(other).whole, 10);
-    fmb_client_close(other);
-    free(others);
-    close_world(&world);
-}
-
 static void a_new_service_holds_no_bodies(void **state)
 {
     struct world world;
@@ -829,18 +806,6 @@ static void bodies_that_are_never_held_end(void **state)
     assert_true(stolen >= 6); /* a slow machine repeats queries, and some of them arrive late */
     struct fmb_client_answer answer;
     assert_int_equal(fmb_client_query_pair(world.client, world.frame, 1, 0, &answer), FMB_OK);
-    close_world(&world);
-}
-
-/* The same id twice in a scene, with different components. */
-static void an_id_may_stand_twice(void **state)
-{
-    struct world world;
-    open_world(&world, 1000);
-    for (int i = 10; i < 20; i++)
-        world.frame[i].id = 5;
-    for (int i = 0; i < 3; i++)
-        query_world(&world);
     close_world(&world);
 }
 
@@ -992,24 +957,6 @@ static void scenes_may_begin_with_any_pair(void **state)
 
 /* ---- Several clients ---- */
 
-static void two_clients_in_a_process(void **state)
-{
-    struct world world;
-    open_world(&world, 1000);
-    struct fmb_client *other = relay_client(world.relay, 5, 1);
-    struct fmb_placement *others = frames_of(80, 2, 3, 1);
-    const struct fmb_scene scene = scene_of(others, 80, FMB_PAIRS_ALL, ALL_WANTS);
-    for (int i = 0; i < 3; i++) {
-        query_world(&world);
-        relay_query(other, &scene);
-    }
-    assert_int_equal(relay_counts(other).malformed, 0);
-    assert_int_equal(relay_counts(world.client).malformed, 0);
-    fmb_client_close(other);
-    free(others);
-    close_world(&world);
-}
-
 enum { THREAD_QUERIES = 8 };
 
 /* cmocka's asserts are for the thread that runs the tests. */
@@ -1087,16 +1034,13 @@ int main(int argc, char **argv)
         RELAY_TEST(ends_are_answered),
         RELAY_TEST(refusals_of_the_service_are_given),
         cmocka_unit_test(bodies_go_by_handle_the_second_time),
-        cmocka_unit_test(equal_ids_of_two_clients_do_not_matter),
         cmocka_unit_test(a_new_service_holds_no_bodies),
         cmocka_unit_test(a_cache_of_one_body_is_enough),
         cmocka_unit_test(bodies_that_are_never_held_end),
-        cmocka_unit_test(an_id_may_stand_twice),
         cmocka_unit_test(ignored_pairs_are_left_out),
         RELAY_TEST(bodies_of_many_frames_are_answered),
         RELAY_TEST(pairs_that_just_fit_into_a_datagram),
         RELAY_TEST(scenes_may_begin_with_any_pair),
-        cmocka_unit_test(two_clients_in_a_process),
         cmocka_unit_test(clients_of_several_threads_are_independent),
     };
     (void) argc;

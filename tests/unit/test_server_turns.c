@@ -42,17 +42,6 @@ static void work_for(int64_t ns)
         assert_int_not_equal(server_work(service.server), SERVER_IDLE);
 }
 
-static void a_client_is_served_in_order(void **state)
-{
-    for (int i = 0; i < 100; i++)
-        service_query_pair(CHEAP, i);
-    assert_int_equal(service.count, 0);
-    service_settle();
-    expect_all_ok(100);
-    for (int i = 0; i < 100; i++)
-        assert_int_equal(service.result[i].sequence_number, i);
-}
-
 static void clients_share_time_not_answers(void **state)
 {
     service.cost_ns[CHEAP] = 10 * US;
@@ -395,24 +384,6 @@ static void a_repeat_expires_by_its_own_arrival(void **state)
     assert_int_equal(service_status()->expired, 1);
 }
 
-/* The second pair waits for the job of the first. */
-static void a_query_in_progress_does_not_expire(void **state)
-{
-    service.tick_ns = US;
-    service_query_frames(CHEAP, 1, 900);
-    service_query_frames(CHEAP, 2, 900);
-    service_query_scene(OTHER, 1, 400);
-    for (int i = 0; i < 20; i++)
-        server_work(service.server);
-    assert_int_equal(service.count, 0);
-    service.now_ns += SERVER_EXPIRY_NS;
-    service_settle();
-    expect_all_ok(2);
-    place_of(CHEAP, 1);
-    place_of(OTHER, 1);
-    assert_int_equal(service_status()->expired, 1);
-}
-
 /* A pair of many frames waits in one FIFO, and then in another for the job of the one before it. */
 static void a_pair_of_many_frames_ages_from_its_arrival(void **state)
 {
@@ -689,7 +660,6 @@ static void a_body_that_two_clients_make_is_cached_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_client_is_served_in_order),
         TEST(clients_share_time_not_answers),
         TEST(reading_is_charged),
         TEST(refusing_is_charged),
@@ -709,7 +679,6 @@ int main(void)
         TEST(an_endless_stream_of_ids_gains_nothing),
         TEST(queries_expire),
         TEST(a_repeat_expires_by_its_own_arrival),
-        TEST(a_query_in_progress_does_not_expire),
         TEST(a_pair_of_many_frames_ages_from_its_arrival),
         TEST(waiting_time_is_limited),
         TEST(the_only_waiting_query_is_never_refused),

@@ -224,37 +224,6 @@ static void hulls_are_read_back(void **state)
     }
 }
 
-/* A tetrahedron whose count says more or fewer vertices than it has, or that has none. */
-static void a_frame_by_vertices_has_their_count(void **state)
-{
-    struct plain_frame frame = sample_frame(3, FMB_TETRAHEDRON), read;
-    frame.by_vertices = true;
-    unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX];
-    const struct body_view geometry = geometry_write(3, &frame, bytes);
-    for (int count = 0; count < 256; count++) {
-        bytes[16] = (unsigned char) count;
-        struct geometry_reader reader = geometry_begin(&geometry);
-        assert_int_equal(geometry_read(&reader, &read), count == 4);
-    }
-    bytes[16] = 4;
-    struct geometry_reader reader = geometry_begin(&geometry);
-    reader.counts_left = 0;
-    assert_false(geometry_read(&reader, &read));
-}
-
-/* The second frame has one number less than it needs. */
-static void a_later_frame_that_does_not_fit_ends_the_geometry(void **state)
-{
-    const struct plain_frame frames[2] = {sample_frame(3, FMB_BOX), sample_frame(3, FMB_FACE)};
-    unsigned char bytes[SAMPLE_BYTES_MAX];
-    struct body_view geometry = geometry_write_frames(3, frames, 2, bytes);
-    struct plain_frame read;
-    geometry.number_count--;
-    struct geometry_reader reader = geometry_begin(&geometry);
-    assert_true(geometry_read(&reader, &read));
-    assert_false(geometry_read(&reader, &read));
-}
-
 /* The handle is what any SHA-256 makes of the bytes between handle and position, as lcm-gen's own
  * encoder writes them: a client in any language can compute it. */
 static void handles_are_hashes_of_the_encoding(void **state)
@@ -539,10 +508,8 @@ int main(void)
         cmocka_unit_test(geometries_are_read_back),
         cmocka_unit_test(shapes_have_their_count_of_numbers),
         cmocka_unit_test(geometries_of_many_frames_are_read_back),
-        cmocka_unit_test(a_later_frame_that_does_not_fit_ends_the_geometry),
         cmocka_unit_test(inconsistent_bodies_have_no_frames),
         cmocka_unit_test(hulls_are_read_back),
-        cmocka_unit_test(a_frame_by_vertices_has_their_count),
         cmocka_unit_test(handles_are_hashes_of_the_encoding),
         cmocka_unit_test(handles_distinguish_zeros),
         cmocka_unit_test(too_long_certificates_are_refused),
