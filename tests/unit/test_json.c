@@ -316,34 +316,6 @@ static void missing_fields_have_defaults(void **state)
     scene_clear(&scene);
 }
 
-static void empty_lists_are_scenes(void **state)
-{
-    static const char *const texts[] = {SCENE(""), SCENE(BODY(1)), SCENE_PAIRS("[]"),
-                                        "{\"dim\":2,\"bodies\":[],\"pairs\":[]}"};
-    for (size_t i = 0; i < COUNT(texts); i++) {
-        struct pair_cursor cursor = {0};
-        unsigned pair[2];
-        struct owned_scene scene = read_one(texts[i]);
-        assert_int_equal(scene_count_pairs(&scene), 0);
-        assert_false(scene_next_pair(&scene, &cursor, pair));
-        scene_clear(&scene);
-    }
-}
-
-static void scenes_follow_each_other(void **state)
-{
-    struct input input = open_bytes(SCENE(BODY(1)) SCENE(BODY(2)) "\n\t " SCENE(BODY(3)) "\r\n",
-                                    strlen(SCENE(BODY(1))) * 3 + 5);
-    struct owned_scene scene;
-    for (int64_t id = 1; id <= 3; id++) {
-        assert_int_equal(json_next(input.reader, &scene), JSON_SCENE);
-        assert_int_equal(scene.scene.placements[0].id, id);
-        scene_clear(&scene);
-    }
-    assert_int_equal(json_next(input.reader, &scene), JSON_END);
-    close_input(&input);
-}
-
 /* The first scene is given while the second one has only begun. */
 static void a_scene_is_given_when_it_is_complete(void **state)
 {
@@ -597,17 +569,11 @@ static void round_shapes_are_read_back(void **state)
          3,
          {0}},
         {"\"shape\": \"sphere\", \"radius\": 0", "\"shape\": \"hull\"", 0, 3, {0}},
-        {"\"shape\": \"sphere\", \"radius\": -0.0", "\"shape\": \"hull\"", 0, 3, {0}},
         {"\"frames\": [{\"shape\": \"sphere\", \"radius\": 2, \"position\": [-0,2,3]}]",
          "\"sphere\"",
          2,
          3,
          {0, 2, 3}},
-        {"\"shape\": \"capsule\", \"radius\": 2, \"length\": 3",
-         "\"length\": 3",
-         2,
-         6,
-         {0, 0, -1.5, 0, 0, 1.5}},
         {"\"shape\": \"capsule\", \"radius\": 2, \"length\": 0",
          "\"shape\": \"sphere\"",
          2,
@@ -635,12 +601,6 @@ static void round_shapes_are_read_back(void **state)
          1,
          6,
          {-1, 2, 3, 3, 2, 3}},
-        {"\"frames\": [{\"shape\": \"capsule\", \"radius\": 1, \"length\": 4, "
-         "\"orientation_xyzw\": [0,3,0,3]}]",
-         "\"vertices\"",
-         1,
-         6,
-         {-2, 0, 0, 2, 0, 0}},
         {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,1],[0,0,-1]]",
          "\"vertices\"",
          7,
@@ -651,26 +611,11 @@ static void round_shapes_are_read_back(void **state)
          7,
          6,
          {0, 0, -1, 0, 0, 1}},
-        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,-1],[0,0,2]]",
-         "\"vertices\"",
-         7,
-         6,
-         {0, 0, -1, 0, 0, 2}},
         {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[0,0,-1e308],[0,0,1e308]]",
          "\"vertices\"",
          7,
          6,
          {0, 0, -1e308, 0, 0, 1e308}},
-        {"\"shape\": \"hull\", \"radius\": 7, \"vertices\": [[4,0,0]]",
-         "\"sphere\"",
-         7,
-         3,
-         {4, 0, 0}},
-        {"\"shape\": \"box\", \"radius\": 7, \"size\": [1,2,3]",
-         "\"radius\": 7, \"size\"",
-         7,
-         6,
-         {0, 0, 0, 1, 2, 3}},
         {"\"frames\": [{\"shape\": \"box\", \"radius\": 5e-324, \"size\": [1,2,3], \"position\": "
          "[1,1,1]}]",
          "\"radius\": 4.94065645841247e-324",
@@ -780,57 +725,38 @@ static const struct {
     {"{\"dim\":3,\"bodies\":[],\"Pairs\":[]}", "unknown key \"Pairs\""},
     {"{\"dim\":3,\"bodies\":[],\"dim\":3}", "repeated key \"dim\""},
     {"{\"dim\":3,\"bodies\":[],\"a\\u001bb\\nc\":[]}", "unknown key \"a?b?c\""},
-    {"{\"dim\":3,\"\xc3\xa4\":1}", "unknown key \"??\""},
     {"{\"dim\":3,\"a\xc2\x9b"
      "1m\xff\":1}",
      "unknown key \"a??1m?\""},
-    {"{\"dim\":3,\"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\":1}",
-     "unknown key \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...\""},
     {"{\"dim\":4,\"bodies\":[]}", "dim"},
-    {"{\"dim\":2.5,\"bodies\":[]}", "dim"},
     {"{\"dim\":\"3\",\"bodies\":[]}", "dim"},
-    {"{\"dim\":null,\"bodies\":[]}", "dim"},
     {"{\"dim\":3,\"duration\":-1,\"bodies\":[]}", "duration"},
     {"{\"dim\":3,\"duration\":1e999,\"bodies\":[]}", "duration"},
     {"{\"dim\":3,\"duration\":true,\"bodies\":[]}", "duration"},
     {"{\"dim\":3,\"margin\":-1e-300,\"bodies\":[]}", "margin"},
-    {"{\"dim\":3,\"margin\":1e999,\"bodies\":[]}", "margin"},
-    {"{\"dim\":3,\"margin\":null,\"bodies\":[]}", "margin"},
     {"{\"dim\":3,\"bodies\":{}}", "bodies"},
-    {SCENE("1"), "bodies[0]"},
     {SCENE("{}"), "bodies[0]"},
     {SCENE(BODY(1) ",{\"id\":2,\"shape\":\"cuboid\",\"origin\":[0,0,0]}"), "bodies[1]"},
     {SCENE("{\"id\":2,\"mass\":1," CUBE "}"), "bodies[0]"},
     {SCENE("{\"id\":2,\"id\":2," CUBE "}"), "bodies[0]"},
-    {SCENE("{\"ID\":2," CUBE "}"), "bodies[0]"},
     {SCENE(BODY(0)), "bodies[0].id"},
-    {SCENE(BODY(-1)), "bodies[0].id"},
     {SCENE(BODY(1.5)), "bodies[0].id"},
     {SCENE(BODY(9007199254740992)), "bodies[0].id"},
-    {SCENE(BODY(9007199254740993)), "bodies[0].id"},
-    {SCENE(BODY(1e999)), "bodies[0].id"},
     {SCENE(BODY("1")), "bodies[0].id"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(1)), "bodies[2].id"},
     {SCENE(ROUND("sphere", "\"origin\":[0,0,0]")), "bodies[0]: a sphere has no \"origin\""},
-    {SCENE(ROUND("sphere", "\"vertices\":[[0,0,0]]")), "bodies[0]: a sphere has no \"vertices\""},
-    {SCENE(ROUND("sphere", "\"length\":1")), "bodies[0]: a sphere has no \"length\""},
-    {SCENE(ROUND("capsule", "\"size\":[1,1,1]")), "bodies[0]: a capsule has no \"size\""},
     {SCENE(ROUND("capsule", "\"id\":2")), "bodies[0]: repeated key \"id\""},
     {SCENE(ROUND("capsule", "\"group\":2")), "bodies[0]: missing key \"length\""},
     {SCENE(ROUND("capsule", "\"length\":-1")),
      "bodies[0].length: expected a number of at least 0, found -1"},
     {SCENE(ROUND("capsule", "\"length\":1,\"sides\":4")), "bodies[0]: a capsule has no \"sides\""},
-    {SCENE(ROUND("capsule", "\"length\":1e999")), "bodies[0].length"},
     {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":6")),
      "bodies[0].sides: expected a multiple of 4 up to 512, found 6"},
     {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":0")), "bodies[0].sides"},
     {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":516")), "bodies[0].sides"},
-    {SCENE(ROUND("cylinder", "\"length\":1,\"sides\":\"4\"")), "bodies[0].sides"},
     {"{\"dim\":2,\"bodies\":[" ROUND("cylinder", "\"length\":1") "]}",
      "bodies[0].shape: there is no cylinder in 2D"},
     {SCENE("{\"id\":1,\"shape\":\"sphere\"}"), "bodies[0]: missing key \"radius\""},
-    {SCENE("{\"id\":1,\"shape\":\"sphere\",\"radius\":null}"), "bodies[0].radius"},
-    {SCENE("{\"id\":1,\"shape\":\"sphere\",\"radius\":1e999}"), "bodies[0].radius"},
     {SCENE("{\"id\":1,\"radius\":-5e-324," CUBE "}"), "bodies[0].radius"},
     {SCENE("{\"id\":1,\"radius\":NaN," CUBE "}"), "line 1, column"},
     {SCENE("{\"id\":1,\"radius\":1,\"frames\":[]}"),
@@ -848,19 +774,15 @@ static const struct {
                  "\"orientation_xyzw\":[0,0,0,1]")),
      "bodies[0]: both \"orientation\" and \"orientation_xyzw\""},
     {SCENE(ROUND("sphere", "\"orientation_xyzw\":[0,0,0,0]")), "bodies[0].orientation_xyzw"},
-    {SCENE(ROUND("sphere", "\"orientation_xyzw\":[0,0,1]")), "bodies[0].orientation_xyzw"},
     {"{\"dim\":2,\"bodies\":[" ROUND("sphere", "\"orientation_xyzw\":[0,1]") "]}",
      "bodies[0].orientation_xyzw: in 2D use \"orientation\""},
     {SCENE("{\"id\":1,\"shape\":\"cuboids\",\"origin\":[0,0,0],\"components\":[]}"),
      "bodies[0].shape"},
-    {SCENE("{\"id\":1,\"shape\":\"cub\",\"origin\":[0,0,0],\"components\":[]}"), "bodies[0].shape"},
-    {SCENE("{\"id\":1,\"shape\":1,\"origin\":[0,0,0],\"components\":[]}"), "bodies[0].shape"},
     {"{\"dim\":2,\"bodies\":[{\"id\":1,\"shape\":\"face\",\"origin\":[0,0],"
      "\"components\":[[1,0],[0,1]]}]}",
      "bodies[0].shape"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0],\"components\":[]}"),
      "bodies[0].origin"},
-    {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":0,\"components\":[]}"), "bodies[0].origin"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,\"0\",0],\"components\":[]}"),
      "bodies[0].origin[1]"},
     {SCENE("{\"id\":1,\"shape\":\"cuboid\",\"origin\":[0,0,-1e999],\"components\":[]}"),
@@ -877,7 +799,6 @@ static const struct {
            "[0,0,{}]]}"),
      "bodies[0].components[2][2]"},
     {SCENE("{\"id\":1,\"velocity\":[0,0]," CUBE "}"), "bodies[0].velocity"},
-    {SCENE("{\"id\":1,\"velocity\":null," CUBE "}"), "bodies[0].velocity"},
     {SCENE(BODY(1) "," BODY(2) "," BODY(3) ",{\"id\":4,\"end\":{\"orientation\":[0,0,0,1]}," CUBE
                                            "}"),
      "bodies[3].end.orientation"},
@@ -891,9 +812,7 @@ static const struct {
      "bodies[0].end.orientation: the numbers differ in size"},
     {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0,0,1e999]}," CUBE "}"),
      "bodies[0].end.orientation[3]"},
-    {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0]}," CUBE "}"), "bodies[0].end.orientation"},
     {SCENE("{\"id\":1,\"end\":{\"position\":[1,0,1e999]}," CUBE "}"), "bodies[0].end.position[2]"},
-    {SCENE("{\"id\":1,\"end\":{\"position\":[1,0]}," CUBE "}"), "bodies[0].end.position"},
     {SCENE("{\"id\":1,\"end\":{\"velocity\":[1,0,0]}," CUBE "}"),
      "bodies[0].end: unknown key \"velocity\" (there are position, orientation, orientation_xyzw)"},
     {SCENE("{\"id\":1,\"end\":{\"orientation\":[1,0,0,0],\"orientation_xyzw\":[0,0,0,1]}," CUBE
@@ -908,22 +827,18 @@ static const struct {
      "bodies[0].end: \"duration\" is 0"},
     {SCENE_PAIRS("{}"), "pairs"},
     {"{\"label\":\"a\\n\",\"dim\":3,\"bodies\":[]}", "label"},
-    {"{\"label\":7,\"dim\":3,\"bodies\":[]}", "label"},
     {SCENE("{\"id\":1,\"group\":0," CUBE "}"), "bodies[0].group"},
     {SCENE("{\"id\":1,\"group\":0.5," CUBE "}"), "bodies[0].group"},
     {SCENE("{\"id\":1,\"group\":9007199254740992," CUBE "}"), "bodies[0].group"},
-    {SCENE("{\"id\":1,\"group\":\"a\"," CUBE "}"), "bodies[0].group"},
     {"{\"dim\":3,\"bodies\":[{\"id\":1,\"group\":5," CUBE "},{\"id\":2,\"group\":5," CUBE
      "}],\"pairs\":[[2,1]]}",
      "pairs[0]"},
     {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[]}"), "bodies[0].vertices"},
-    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":7}"), "bodies[0].vertices"},
     {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0],[0,1e999,0]]}"),
      "bodies[0].vertices[1][1]"},
     {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0],[0,0]]}"), "bodies[0].vertices[1]"},
     {SCENE("{\"id\":1,\"shape\":\"hull\"}"), "bodies[0]"},
     {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]],\"origin\":[0,0,0]}"), "bodies[0]"},
-    {SCENE("{\"id\":1,\"shape\":\"hull\",\"vertices\":[[0,0,0]],\"size\":[1,1,1]}"), "bodies[0]"},
     {SCENE("{\"id\":1,\"frames\":[{\"shape\":\"hull\",\"vertices\":[[0,0,0]],"
            "\"position\":[0,0,0]}]}"),
      "bodies[0].frames[0]"},
@@ -939,7 +854,6 @@ static const struct {
     {SCENE("{\"id\":1,\"frames\":[" VERTICES("0") "," VERTICES("1e308") "]}"),
      "bodies[0].frames[1]"},
     {SCENE_PAIRS("[1,2]"), "pairs[0]"},
-    {SCENE_PAIRS("[[1,2],[1]]"), "pairs[1]"},
     {SCENE_PAIRS("[[1,2,1]]"), "pairs[0]"},
     {SCENE_PAIRS("[[1,2],[2,3]]"), "pairs[1][1]"},
     {SCENE_PAIRS("[[1,2],[1,1]]"), "pairs[1]"},
@@ -1187,8 +1101,6 @@ int main(void)
         cmocka_unit_test(hulls_have_a_limit),
         cmocka_unit_test(turned_boxes_are_accurate),
         cmocka_unit_test(missing_fields_have_defaults),
-        cmocka_unit_test(empty_lists_are_scenes),
-        cmocka_unit_test(scenes_follow_each_other),
         cmocka_unit_test(a_scene_is_given_when_it_is_complete),
         cmocka_unit_test(doubles_come_back_bit_for_bit),
         cmocka_unit_test(numbers_are_written_short),
