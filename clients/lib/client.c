@@ -70,7 +70,7 @@ static const char *on_result(struct fmb_client *client, const struct bus_message
 static const char *on_definition(struct fmb_client *client, const struct bus_message *message)
 {
     const char *error = wire_read_definition(message->bytes, (uint32_t) message->size,
-                                             client->hasher, &client->received.definition);
+                                             &client->received.definition);
     if (!error && client->received.definition.client_id == client->requests.client_id)
         take(client, message, FMB_CLIENT_DEFINITION);
     return error;
@@ -393,15 +393,13 @@ static bool set_options(struct fmb_client *client, const struct fmb_client_optio
 static bool open_parts(struct fmb_client *client, const char *url, char why[BUS_WHY_MAX])
 {
     client->bus = bus_open(url, why);
-    client->hasher = client->bus ? hasher_create() : NULL;
-    client->held.hasher = client->hasher;
     client->requests.transport =
         (struct request_transport){client, publish, wait_for_datagram, receive_results};
     client->requests.client_id = random_id();
     client->run.requests = &client->requests;
     client->run.held = &client->held;
     requests_forget_pace(&client->requests);
-    return client->hasher != NULL;
+    return client->bus != NULL;
 }
 
 struct fmb_client *fmb_client_open(const struct fmb_client_options *options, char *why, size_t size)
@@ -426,7 +424,6 @@ void fmb_client_close(struct fmb_client *client)
     if (!client)
         return;
     bus_close(client->bus);
-    hasher_destroy(client->hasher);
     held_clear(&client->held);
     free(client);
 }

@@ -22,7 +22,6 @@ struct fmb_client {
     bus_handler *tap;             /* fmb_client_raw_listen(); NULL: none */
     void *tap_user;
     struct fmb_client_watcher watcher;
-    struct hasher *hasher;
     struct held held;
     struct requests requests;
     struct scene_run run;

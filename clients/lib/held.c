@@ -11,9 +11,8 @@ static struct held_body *enter(struct held *held, const struct body_view *view,
     struct held_body *body = malloc(sizeof *body + view->size);
     if (!body)
         return NULL;
-    *body = (struct held_body){.next = *at,
-                               .handle = hasher_handle(held->hasher, view->bytes, view->size),
-                               .size = view->size};
+    *body = (struct held_body){
+        .next = *at, .handle = handle_of(view->bytes, view->size), .size = view->size};
     memcpy(body->bytes, view->bytes, view->size);
     held->count++;
     return *at = body;

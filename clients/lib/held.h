@@ -18,9 +18,8 @@ struct held_body {
     unsigned char bytes[]; /* [size], encoded */
 };
 
-/* All 0 but the hasher: empty. */
+/* All 0: empty. */
 struct held {
-    struct hasher *hasher; /* not owned */
     size_t count;
     struct held_body *body[HELD_MAX]; /* owned, by their digests */
 };

@@ -23,7 +23,6 @@ struct definitions {
     struct defined_body *by_bytes, *by_handle; /* heads of the tables */
     size_t bytes;                              /* of all bodies */
     int64_t file;
-    struct hasher *hasher;
     struct logged_query query;
     struct definition read;
     struct definition written; /* the message that is being packed; size: of its bodies */
@@ -37,9 +36,6 @@ struct definitions *definitions_open(void)
 {
     struct definitions *definitions = allocate(1, sizeof *definitions);
     definitions->file = 1;
-    definitions->hasher = hasher_create();
-    if (!definitions->hasher)
-        allocate_failed();
     return definitions;
 }
 
@@ -59,7 +55,6 @@ void definitions_close(struct definitions *definitions)
         next = body->by_bytes.next;
         free(body);
     }
-    hasher_destroy(definitions->hasher);
     free(definitions);
 }
 
@@ -87,7 +82,7 @@ static struct defined_body *make(struct definitions *definitions, const struct b
 static void add_handle(struct definitions *definitions, struct defined_body *body)
 {
     struct handle *handle = &body->view.handle;
-    *handle = hasher_handle(definitions->hasher, body->bytes, body->view.size);
+    *handle = handle_of(body->bytes, body->view.size);
     struct defined_body *wanted = find(definitions, handle);
     if (wanted) {
         HASH_DELETE(by_handle, definitions->by_handle, wanted);
@@ -135,7 +130,7 @@ const char *definitions_add_message(struct definitions *definitions, struct body
     }
     if (kind != LOG_DEFINITION)
         return body_names_take_message(names, kind, bytes, size);
-    const char *error = wire_read_definition(bytes, size, definitions->hasher, read);
+    const char *error = wire_read_definition(bytes, size, read);
     for (int32_t i = 0; !error && i < read->body_count; i++)
         definitions_add(definitions, &read->body[i]);
     return error;

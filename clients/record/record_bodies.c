@@ -25,8 +25,7 @@ struct record_bodies {
     bool more;                       /* the next request continues request.first */
     struct record_bodies_counts counts;
     struct query_header last[CLIENTS]; /* [client id modulo CLIENTS] */
-    struct hasher *hasher;
-    enum log_kind kind; /* of the message read; LOG_OTHER: it cannot be decoded */
+    enum log_kind kind;                /* of the message read; LOG_OTHER: it cannot be decoded */
     const struct query_placement *placement; /* [placement_count], of a query */
     int32_t placement_count;
     union {
@@ -48,9 +47,6 @@ struct record_bodies *record_bodies_open(int64_t client_id)
     bodies->kind = LOG_OTHER;
     bodies->definitions = definitions_open();
     bodies->names = body_names_open();
-    bodies->hasher = hasher_create();
-    if (!bodies->hasher)
-        allocate_failed();
     return bodies;
 }
 
@@ -58,7 +54,6 @@ void record_bodies_close(struct record_bodies *bodies)
 {
     definitions_close(bodies->definitions);
     body_names_close(bodies->names);
-    hasher_destroy(bodies->hasher);
     free(bodies->wanted);
     free(bodies);
 }
@@ -76,8 +71,7 @@ static const char *read_message(struct record_bodies *bodies, enum log_kind kind
         return logged_result_read(&bodies->message.result, log_kind_query_of(kind), bytes, size);
     case LOG_DEFINITION_QUERY:
         return wire_read_definition_query(bytes, size, &bodies->message.definition_query);
-    case LOG_DEFINITION:
-        return wire_read_definition(bytes, size, bodies->hasher, &bodies->message.definition);
+    case LOG_DEFINITION: return wire_read_definition(bytes, size, &bodies->message.definition);
     case LOG_STATUS: return wire_read_status(bytes, size, &bodies->message.status);
     case LOG_NAMES: return wire_read_names(bytes, size, &bodies->message.names);
     default: return NULL;
@@ -240,7 +234,7 @@ void record_bodies_take_result(void *user, const struct fmb_client_raw_result *r
     struct definition *definition = &bodies->message.definition;
     bodies->under_way = false;
     if (result->status == FMB_OK &&
-        !wire_read_definition(result->bytes, (uint32_t) result->size, bodies->hasher, definition)) {
+        !wire_read_definition(result->bytes, (uint32_t) result->size, definition)) {
         bodies->more = definition->next != 0;
         request->first = definition->next;
     }

@@ -182,9 +182,6 @@ static bool open_replay(struct replay *replay)
         replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
     if ((options->bus && !replay->bus) || !open_output(replay))
         return false;
-    replay->hasher = hasher_create();
-    if (!replay->hasher)
-        allocate_failed();
     replay->channels = log_channels(options->prefix);
     return true;
 }
@@ -206,7 +203,6 @@ static void close_replay(struct replay *replay)
     input_close(&replay->rereader);
     input_close(&replay->golden_rereader);
     free(replay->paths);
-    hasher_destroy(replay->hasher);
     definitions_close(replay->definitions);
     input_close(&replay->input);
     const bool empty = replay->new_golden && log_written(replay->new_golden) == 0;

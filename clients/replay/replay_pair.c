@@ -112,7 +112,7 @@ static struct handle group_of(struct replay *replay, int64_t kind, const struct 
     }
     memcpy(out, number, sizeof number);
     strcpy((char *) out + sizeof number, label);
-    return hasher_handle(replay->hasher, out, sizeof number + strlen(label));
+    return handle_of(out, sizeof number + strlen(label));
 }
 
 /* Numbers the times at which a query was sent again. */

@@ -26,7 +26,6 @@ struct replay {
     struct output *golden_file;    /* NULL: none */
     struct log_writer *new_golden; /* of golden_file */
     struct definitions *definitions;
-    struct hasher *hasher;
     bool started, failed;
 
     struct match match;          /* queries, and the results to compare with */

@@ -29,16 +29,8 @@ static inline bool handle_equal(const struct handle *a, const struct handle *b)
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-/* Computes handles. One hasher may be used by one thread at a time; hashers share no state. */
-struct hasher;
-
-/* Returns NULL if out of memory (GLib may abort the process instead). hasher_destroy() accepts
- * NULL. */
-struct hasher *hasher_create(void);
-void hasher_destroy(struct hasher *hasher);
-
-/* Returns the handle of an encoded geometry of size bytes. GLib allocates some 70 bytes in each
- * call, and frees them in the next one. */
-struct handle hasher_handle(struct hasher *hasher, const unsigned char *bytes, size_t size);
+/* Returns the handle of an encoded geometry of size bytes. GLib allocates some hundred bytes during
+ * the call; out of memory, it aborts the process. */
+struct handle handle_of(const unsigned char *bytes, size_t size);
 
 #endif

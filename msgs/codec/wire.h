@@ -76,8 +76,7 @@ const char *wire_read_scene_query(const void *bytes, uint32_t size, struct scene
 const char *wire_read_scene_result(const void *bytes, uint32_t size, struct scene_result *out);
 const char *wire_read_definition_query(const void *bytes, uint32_t size,
                                        struct definition_query *out);
-const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher *hasher,
-                                 struct definition *out);
+const char *wire_read_definition(const void *bytes, uint32_t size, struct definition *out);
 const char *wire_read_status(const void *bytes, uint32_t size, struct wire_status *out);
 const char *wire_read_names(const void *bytes, uint32_t size, struct names *out);
 

@@ -34,12 +34,12 @@ size_t wire_write_definition_query(const struct definition_query *query,
 
 /* A body without frames, or that does not match its handle, is an error. Its frames are not
  * checked. */
-static void read_body(struct cursor *cursor, struct hasher *hasher, struct body_view *out)
+static void read_body(struct cursor *cursor, struct body_view *out)
 {
     struct cursor local = *cursor;
     wire_read_body(&local, out);
     if (!local.error) {
-        const struct handle handle = hasher_handle(hasher, out->bytes, out->size);
+        const struct handle handle = handle_of(out->bytes, out->size);
         if (out->frame_count == 0)
             cursor_fail(&local, "a body without frames");
         if (!handle_equal(&handle, &out->handle))
@@ -48,8 +48,7 @@ static void read_body(struct cursor *cursor, struct hasher *hasher, struct body_
     *cursor = local;
 }
 
-const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher *hasher,
-                                 struct definition *out)
+const char *wire_read_definition(const void *bytes, uint32_t size, struct definition *out)
 {
     struct cursor cursor = cursor_begin(bytes, size, __fmb_msgs_definition_t_get_hash());
     wire_read_ids(&cursor, &out->header);
@@ -63,7 +62,7 @@ const char *wire_read_definition(const void *bytes, uint32_t size, struct hasher
     if (out->body_count > 0 && out->status != FMB_OK)
         cursor_fail(&cursor, "bodies and status do not go together");
     for (int32_t i = 0; i < out->body_count && !cursor.error; i++)
-        read_body(&cursor, hasher, &out->body[i]);
+        read_body(&cursor, &out->body[i]);
     return cursor_end(&cursor);
 }
 

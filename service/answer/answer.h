@@ -4,7 +4,7 @@
  * definition query is answered by one call, a pair or scene query in steps (a job), so that the
  * caller can do other work between them. An answerer and its jobs may be used by one thread at a
  * time; answerers share no state. Functions without a word on errors cannot fail. Only create
- * functions allocate, apart from GMP and the hasher (handle.h). */
+ * functions allocate, apart from GMP and GLib (handle.h). */
 #ifndef ANSWER_H
 #define ANSWER_H
 

@@ -73,7 +73,6 @@ struct cache {
     unsigned char *slot;       /* [frame_capacity][SLOT_BYTES] */
     struct runs runs;          /* of slots */
     uint64_t *begins;          /* bit s: a body begins in slot s */
-    struct hasher *hasher;
     struct cache_counts counts;
     unsigned char *memory; /* owned: of all arrays */
     size_t size;           /* of memory, bytes */
@@ -123,8 +122,7 @@ static bool allocate(struct cache *cache)
     take_arrays(cache);
     cache->memory = calloc(cache->size + LINE, 1);
     take_arrays(cache);
-    cache->hasher = hasher_create();
-    return cache->memory && cache->hasher;
+    return cache->memory;
 }
 
 struct cache *cache_create(size_t frames, const uint64_t secret[2])
@@ -151,7 +149,6 @@ void cache_destroy(struct cache *cache)
 {
     if (!cache)
         return;
-    hasher_destroy(cache->hasher);
     free(cache->memory);
     free(cache);
 }
@@ -408,7 +405,7 @@ const struct cached *cache_lookup(struct cache *cache, int64_t id, struct body_v
         view->handle = cache->entry[e].handle;
         return pin(cache, e);
     }
-    view->handle = hasher_handle(cache->hasher, view->bytes, view->size);
+    view->handle = handle_of(view->bytes, view->size);
     e = find(cache, &view->handle);
     if (e == NONE) {
         cache->counts.misses++;

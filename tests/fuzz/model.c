@@ -69,7 +69,7 @@ struct handle model_keep(struct model *model, const struct query_placement *plac
     make(view, out);
     if (placement->placed.id == 0)
         return handle;
-    handle = hasher_handle(model->hasher, view->bytes, view->size);
+    handle = handle_of(view->bytes, view->size);
     if (!model_peek(model, &handle)) {
         FUZZ_CHECK(model->count < MODEL_BODIES_MAX);
         struct model_body *body = &model->body[model->count++];

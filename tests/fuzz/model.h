@@ -16,7 +16,6 @@ enum {
 
 struct model {
     int count;
-    struct hasher *hasher;
     struct model_body {
         struct body_view view;
         unsigned char bytes[MODEL_BYTES_MAX];

@@ -83,12 +83,9 @@ static void look_at_definition(struct look *look, const struct log_event *event)
 {
     static struct definition definition;
     struct spread spread = {0, 0};
-    struct hasher *hasher = hasher_create();
-    FUZZ_CHECK(hasher);
-    if (!wire_read_definition(event->data, (uint32_t) event->kept, hasher, &definition))
+    if (!wire_read_definition(event->data, (uint32_t) event->kept, &definition))
         for (int32_t i = 0; i < definition.body_count; i++)
             look_at_geometry(look, &spread, &definition.body[i]);
-    hasher_destroy(hasher);
 }
 
 static void look_at_event(struct look *look, enum log_kind kind, const struct log_event *event)

@@ -59,9 +59,7 @@ static void take_scene(const unsigned char *bytes, uint32_t size)
 static void take_definition(const unsigned char *bytes, uint32_t size)
 {
     static struct definition result;
-    struct hasher *hasher = hasher_create();
-    assert_null(wire_read_definition(bytes, size, hasher, &result));
-    hasher_destroy(hasher);
+    assert_null(wire_read_definition(bytes, size, &result));
     service.definition_bodies = result.body_count;
     add((struct service_result){.kind = SERVER_DEFINITIONS,
                                 .client_id = result.client_id,

@@ -60,12 +60,10 @@ static struct handle keep_geometry(struct cache *cache, int64_t id,
 static void a_body_is_found_by_its_handle(void **state)
 {
     struct cache *cache = cache_create(4, secret);
-    struct hasher *hasher = hasher_create();
     const struct handle handle = keep(cache, 0, 3);
     const struct body_view geometry = cuboid(3, 3);
-    const struct handle expected = hasher_handle(hasher, geometry.bytes, geometry.size);
+    const struct handle expected = handle_of(geometry.bytes, geometry.size);
     assert_true(handle_equal(&handle, &expected));
-    hasher_destroy(hasher);
     cache_destroy(cache);
 }
 
@@ -418,10 +416,9 @@ static void ids_chosen_to_collide(void **state)
 static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int capacity, int bits)
 {
     struct cache *cache = cache_create((size_t) capacity, used);
-    struct hasher *hasher = hasher_create();
     for (int kept = 0, n = 1; kept < capacity; n++) {
         const struct body_view geometry = cuboid(1, n);
-        const struct handle handle = hasher_handle(hasher, geometry.bytes, geometry.size);
+        const struct handle handle = handle_of(geometry.bytes, geometry.size);
         uint64_t half = 0;
         for (int i = 0; i < 8; i++)
             half = half << 8 | handle.bytes[i];
@@ -432,7 +429,6 @@ static int64_t longest_chain(uint64_t multiplier, const uint64_t used[2], int ca
     }
     const int64_t longest = cache_longest_chain(cache);
     assert_int_equal(cache_counts(cache).bodies, capacity);
-    hasher_destroy(hasher);
     cache_destroy(cache);
     return longest;
 }

@@ -1047,7 +1047,6 @@ static void bodies_are_kept_until_the_table_is_full(void **state)
     assert_int_equal(fmb_body_make(3, FMB_BOX, size, 3, &box), FMB_OK);
     for (int i = 0; i < HELD_MAX; i++)
         bodies[i].body = &box;
-    held.hasher = hasher_create();
     struct held_body *first = held_find(&held, &geometry);
     first->held = true;
     for (int more = -1; more < 2; more++) {
@@ -1060,7 +1059,6 @@ static void bodies_are_kept_until_the_table_is_full(void **state)
         assert_int_equal(scene_run(&run, &scene, false, NULL, NULL), FMB_OK);
         assert_int_equal(held.count, more == 1 ? 0 : HELD_MAX + more);
     }
-    hasher_destroy(held.hasher);
 }
 
 /* ---- Second results ---- */

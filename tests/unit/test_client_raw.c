@@ -233,10 +233,8 @@ static void query_scene(struct fmb_client *client, struct scene_result *out)
 
 static void take_definition(void *user, const struct fmb_client_raw_result *result)
 {
-    struct hasher *hasher = hasher_create();
     assert_int_equal(result->status, FMB_OK);
-    assert_null(wire_read_definition(result->bytes, (uint32_t) result->size, hasher, user));
-    hasher_destroy(hasher);
+    assert_null(wire_read_definition(result->bytes, (uint32_t) result->size, user));
 }
 
 static void query_definition(struct fmb_client *client, int64_t first, const struct handle *handle,

@@ -14,7 +14,6 @@ struct body {
 
 struct world {
     struct definitions *definitions;
-    struct hasher *hasher;
     unsigned char bytes[QUERY_BYTES_MAX];
 };
 
@@ -23,7 +22,7 @@ static void make_body(struct world *world, double size, struct body *out)
     const struct plain_frame frame = {.shape = FMB_CUBOID,
                                       .components = {size, 0, 0, 0, size, 0, 0, 0, size}};
     out->view = geometry_write(3, &frame, out->bytes);
-    out->view.handle = hasher_handle(world->hasher, out->bytes, out->view.size);
+    out->view.handle = handle_of(out->bytes, out->view.size);
 }
 
 static struct query_placement place(const struct body *body)
@@ -45,7 +44,6 @@ static int set_up(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
     world->definitions = definitions_open();
-    world->hasher = hasher_create();
     *state = world;
     return 0;
 }
@@ -54,7 +52,6 @@ static int tear_down(void **state)
 {
     struct world *world = *state;
     definitions_close(world->definitions);
-    hasher_destroy(world->hasher);
     free(world);
     return 0;
 }

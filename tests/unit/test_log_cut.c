@@ -199,11 +199,8 @@ static bool is_same_event(const struct log_event *a, const struct log_event *b)
 static bool is_added(const struct log_event *event)
 {
     static struct definition definition;
-    static struct hasher *hasher;
-    if (!hasher)
-        hasher = hasher_create();
     if (kind_of(event) != LOG_DEFINITION ||
-        wire_read_definition(event->data, (uint32_t) event->kept, hasher, &definition))
+        wire_read_definition(event->data, (uint32_t) event->kept, &definition))
         return false;
     return definition.client_id == 0 && definition.server_id == 0;
 }

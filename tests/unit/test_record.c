@@ -18,7 +18,6 @@ struct body {
 
 struct world {
     struct record_bodies *bodies;
-    struct hasher *hasher;
     int64_t now_ns;
     uint64_t sequence_number;
     int requests;
@@ -36,7 +35,7 @@ static bool on_write(void *user, enum log_kind kind, const void *bytes, size_t s
 {
     static struct definition definition;
     struct world *world = user;
-    assert_null(wire_read_definition(bytes, (uint32_t) size, world->hasher, &definition));
+    assert_null(wire_read_definition(bytes, (uint32_t) size, &definition));
     assert_int_equal(definition.client_id, 0);
     assert_int_equal(definition.server_id, 0);
     assert_null(definitions_add_message(world->file, NULL, LOG_DEFINITION, bytes, (uint32_t) size));
@@ -59,7 +58,6 @@ static int set_up(void **state)
 {
     struct world *world = allocate(1, sizeof *world);
     world->bodies = record_bodies_open(RECORDER);
-    world->hasher = hasher_create();
     world->file = definitions_open();
     world->now_ns = SECOND;
     *state = world;
@@ -70,7 +68,6 @@ static int tear_down(void **state)
 {
     struct world *world = *state;
     record_bodies_close(world->bodies);
-    hasher_destroy(world->hasher);
     definitions_close(world->file);
     free(world);
     return 0;
@@ -84,7 +81,7 @@ static struct body make_body(struct world *world, double size)
                                       .components = {size, 0, 0, 0, size, 0, 0, 0, size}};
     struct body body;
     body.view = geometry_write(3, &frame, body.bytes);
-    body.view.handle = hasher_handle(world->hasher, body.bytes, body.view.size);
+    body.view.handle = handle_of(body.bytes, body.view.size);
     return body;
 }
 

@@ -22,8 +22,6 @@
 
 #include <math.h>
 
-static struct hasher *hasher;
-
 /* A change of any field changes the fingerprint, and with it breaks every old client and log. */
 static void fingerprints_are_pinned(void **state)
 {
@@ -230,7 +228,7 @@ static void handles_are_hashes_of_the_encoding(void **state)
 {
     static const unsigned char abc[HANDLE_BYTES] = {0xba, 0x78, 0x16, 0xbf, 0x8f, 0x01, 0xcf, 0xea,
                                                     0x41, 0x41, 0x40, 0xde, 0x5d, 0xae, 0x22, 0x23};
-    struct handle handle = hasher_handle(hasher, (const unsigned char *) "abc", 3);
+    struct handle handle = handle_of((const unsigned char *) "abc", 3);
     assert_memory_equal(handle.bytes, abc, sizeof abc);
 
     unsigned char bytes[GEOMETRY_FRAME_BYTES_MAX], encoded[HOSTILE_BYTES_MAX];
@@ -252,7 +250,7 @@ static void handles_distinguish_zeros(void **state)
     for (int i = 0; i < 2; i++) {
         struct plain_frame frame = {.shape = FMB_CUBOID, .components = {1, i ? -0.0 : 0.0}};
         const size_t size = geometry_write(2, &frame, bytes[i]).size;
-        handle[i] = hasher_handle(hasher, bytes[i], size);
+        handle[i] = handle_of(bytes[i], size);
         assert_false(handle_is_none(&handle[i]));
     }
     assert_false(handle_equal(&handle[0], &handle[1]));
@@ -487,18 +485,6 @@ static void names_are_read_back(void **state)
     assert_int_equal(read.count, QUERY_NAMES_MAX);
 }
 
-static int set_up(void **state)
-{
-    hasher = hasher_create();
-    return hasher ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    hasher_destroy(hasher);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -520,5 +506,5 @@ int main(void)
         cmocka_unit_test(a_heartbeat_of_a_newer_service_is_read),
         cmocka_unit_test(names_are_read_back),
     };
-    return cmocka_run_group_tests_name("wire", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("wire", tests, NULL, NULL);
 }
