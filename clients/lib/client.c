@@ -34,45 +34,35 @@ bool fmb_client_prefix_ok(const char *prefix)
 
 /* ---- Messages ---- */
 
-/* Passes the result in client->received to the request engine. */
-static void take(struct fmb_client *client, const struct bus_message *message,
-                 enum fmb_client_kind kind)
+/* Passes a result for this client to the request engine. Of results for others, only the header is
+ * read, unless they are definitions. */
+static const char *on_result(struct fmb_client *client, const struct bus_message *message,
+                             enum fmb_client_kind kind)
 {
-    const struct result_head *head = &client->received.head;
+    const unsigned char *bytes = message->bytes;
+    const uint32_t size = (uint32_t) message->size;
+    struct result_head *head = &client->received.head;
+    const char *error = kind == FMB_CLIENT_PAIR
+                            ? wire_read_pair_result_header(bytes, size, &head->header)
+                        : kind == FMB_CLIENT_SCENE
+                            ? wire_read_scene_result_header(bytes, size, &head->header)
+                            : wire_read_definition(bytes, size, &client->received.definition);
+    if (error || head->client_id != client->requests.client_id)
+        return error;
+    if (kind == FMB_CLIENT_PAIR)
+        error = wire_read_pair_result(bytes, size, &client->received.pair);
+    else if (kind == FMB_CLIENT_SCENE)
+        error = wire_read_scene_result(bytes, size, &client->received.scene);
     const struct request_result result = {.kind = kind,
                                           .status = head->status,
                                           .detail = head->detail,
                                           .pair = &client->received.pair,
                                           .scene = &client->received.scene,
-                                          .bytes = message->bytes,
+                                          .bytes = bytes,
                                           .size = message->size,
                                           .number = head->sequence_number};
-    requests_take(&client->requests, &result);
-}
-
-static const char *on_result(struct fmb_client *client, const struct bus_message *message,
-                             enum fmb_client_kind kind)
-{
-    const bool is_pair = kind == FMB_CLIENT_PAIR;
-    struct query_header header;
-    const uint32_t size = (uint32_t) message->size;
-    const char *error = (is_pair ? wire_read_pair_result_header : wire_read_scene_result_header)(
-        message->bytes, size, &header);
-    if (error || header.client_id != client->requests.client_id)
-        return error;
-    error = is_pair ? wire_read_pair_result(message->bytes, size, &client->received.pair)
-                    : wire_read_scene_result(message->bytes, size, &client->received.scene);
     if (!error)
-        take(client, message, kind);
-    return error;
-}
-
-static const char *on_definition(struct fmb_client *client, const struct bus_message *message)
-{
-    const char *error = wire_read_definition(message->bytes, (uint32_t) message->size,
-                                             &client->received.definition);
-    if (!error && client->received.definition.client_id == client->requests.client_id)
-        take(client, message, FMB_CLIENT_DEFINITION);
+        requests_take(&client->requests, &result);
     return error;
 }
 
@@ -120,9 +110,8 @@ static void on_message(void *user, const struct bus_message *message)
     if (message->listener >= client->listener_count) /* only the tap receives it */
         return;
     const int channel = client->channel[message->listener];
-    const char *error = channel == CLIENT_STATUS           ? on_status(client, message)
-                        : channel == FMB_CLIENT_DEFINITION ? on_definition(client, message)
-                                                           : on_result(client, message, channel);
+    const char *error =
+        channel == CLIENT_STATUS ? on_status(client, message) : on_result(client, message, channel);
     if (!error)
         return;
     client->requests.counts.malformed++;

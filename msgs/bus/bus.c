@@ -37,18 +37,13 @@ enum { SPIN_NOT = 0, SPIN_FROM_NEXT_WAIT = -1 };
  * that long. */
 enum { YIELD_LONG_NS = 1000000, SPIN_PAUSE_NS = 1000000000 };
 
-struct bus_listener {
-    bool every; /* receives every channel */
-    char channel[BUS_CHANNEL_MAX];
-};
-
 struct bus {
     struct bus_url url;
     lcm_t *lcm;
     int fd;     /* -1 before bus_listen() */
     bool trims; /* the filter of socket.h has been attached */
     int listener_count;
-    struct bus_listener listeners[BUS_LISTENERS_MAX];
+    char listeners[BUS_LISTENERS_MAX][BUS_CHANNEL_MAX]; /* channels; "": every channel */
     struct mmsghdr datagrams[BUS_BATCH];
     struct iovec buffers[BUS_BATCH];
     unsigned char *memory; /* owned: [BUS_BATCH][BUFFER_SIZE], the buffers */
@@ -122,27 +117,20 @@ void bus_close(struct bus *bus)
     free(bus);
 }
 
-/* Allocates the buffers. Their memory is touched when a datagram is first read into it. */
-static bool allocate_buffers(struct bus *bus)
-{
-    if (!bus->memory)
-        bus->memory = malloc((size_t) BUS_BATCH * BUFFER_SIZE);
-    if (!bus->memory)
-        return false;
-    for (size_t i = 0; i < BUS_BATCH; i++) {
-        bus->buffers[i] = (struct iovec){bus->memory + i * BUFFER_SIZE, BUFFER_SIZE};
-        bus->datagrams[i].msg_hdr = (struct msghdr){.msg_iov = &bus->buffers[i], .msg_iovlen = 1};
-    }
-    return true;
-}
-
+/* The memory of the buffers is touched when a datagram is first read into it. */
 static bool start_receiving(struct bus *bus, char why[BUS_WHY_MAX])
 {
     if (bus->fd >= 0)
         return true;
-    if (!allocate_buffers(bus)) {
+    if (!bus->memory)
+        bus->memory = malloc((size_t) BUS_BATCH * BUFFER_SIZE);
+    if (!bus->memory) {
         no_memory(why);
         return false;
+    }
+    for (size_t i = 0; i < BUS_BATCH; i++) {
+        bus->buffers[i] = (struct iovec){bus->memory + i * BUFFER_SIZE, BUFFER_SIZE};
+        bus->datagrams[i].msg_hdr = (struct msghdr){.msg_iov = &bus->buffers[i], .msg_iovlen = 1};
     }
     bus->fd = bus_socket_open(&bus->url, &bus->counts.receive_buffer, why);
     return bus->fd >= 0;
@@ -160,11 +148,11 @@ static void trim_others(struct bus *bus)
     const char *channels[BUS_LISTENERS_MAX];
     const int unused = 0; /* the kernel refuses to detach without an argument */
     for (int i = 0; i < bus->listener_count; i++) {
-        if (bus->listeners[i].every) {
+        if (!*bus->listeners[i]) {
             setsockopt(bus->fd, SOL_SOCKET, SO_DETACH_FILTER, &unused, sizeof unused);
             return;
         }
-        channels[i] = bus->listeners[i].channel;
+        channels[i] = bus->listeners[i];
     }
     bus_socket_trim(bus->fd, channels, bus->listener_count);
     bus->trims = true;
@@ -183,10 +171,7 @@ bool bus_listen(struct bus *bus, const char *channel, char why[BUS_WHY_MAX])
     }
     if (!start_receiving(bus, why))
         return false;
-    struct bus_listener *listener = &bus->listeners[bus->listener_count++];
-    listener->every = !channel;
-    if (channel)
-        strcpy(listener->channel, channel);
+    strcpy(bus->listeners[bus->listener_count++], channel ? channel : "");
     trim_others(bus);
     return true;
 }
@@ -216,7 +201,7 @@ static bool parse_datagram(const unsigned char *bytes, size_t size, const char m
 static int find_listener(const struct bus *bus, const char *channel)
 {
     for (int i = 0; i < bus->listener_count; i++)
-        if (bus->listeners[i].every || strcmp(bus->listeners[i].channel, channel) == 0)
+        if (!*bus->listeners[i] || strcmp(bus->listeners[i], channel) == 0)
             return i;
     return -1;
 }

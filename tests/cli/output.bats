@@ -1,5 +1,5 @@
 # The files that commands write: no input is overwritten; a log, or a file of another kind, only with
-# --force; a command that fails leaves no file. The rules themselves: tests/unit/test_output.c.
+# --force; a command that fails leaves no file. Links, modes and signals: tests/unit/test_output.c.
 
 load ../ran
 

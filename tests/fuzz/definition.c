@@ -49,7 +49,8 @@ static void set_handles(uint8_t *bytes, size_t size)
     FUZZ_CHECK(fmb_msgs_definition_t_decode(bytes, 0, (int) size, &message) == (int) size);
     for (int32_t i = 0; i < message.num_bodies; i++)
         if (memcmp(message.bodies[i].handle, none, sizeof none) == 0)
-            memcpy(message.bodies[i].handle, expected_handle(&message.bodies[i]).bytes, sizeof none);
+            memcpy(message.bodies[i].handle, expected_handle(&message.bodies[i]).bytes,
+                   sizeof none);
     FUZZ_CHECK(fmb_msgs_definition_t_encode(bytes, 0, (int) size, &message) == (int) size);
     fmb_msgs_definition_t_decode_cleanup(&message);
 }

@@ -56,33 +56,6 @@ static struct handle keep_geometry(struct cache *cache, int64_t id,
     return view.handle;
 }
 
-/* As other programs compute it. */
-static void a_body_is_found_by_its_handle(void **state)
-{
-    struct cache *cache = cache_create(4, secret);
-    const struct handle handle = keep(cache, 0, 3);
-    const struct body_view geometry = cuboid(3, 3);
-    const struct handle expected = handle_of(geometry.bytes, geometry.size);
-    assert_true(handle_equal(&handle, &expected));
-    cache_destroy(cache);
-}
-
-static void unknown_handles_are_not_found(void **state)
-{
-    struct cache *cache = cache_create(3, secret);
-    const struct handle handle = keep(cache, 1, 1);
-    for (int i = 0; i < HANDLE_BYTES; i++) {
-        struct handle other = handle;
-        other.bytes[i] ^= 1;
-        assert_true(find(cache, other) == 0);
-        assert_null(cache_peek(cache, &other));
-    }
-    assert_true(find(cache, (struct handle){{0}}) == 0);
-    assert_int_equal(cache_counts(cache).hits, 0);
-    assert_int_equal(cache_counts(cache).misses, 1);
-    cache_destroy(cache);
-}
-
 /* The body of an id is the one it was before only if no bit of any number has changed. */
 static void each_number_of_a_body_counts(void **state)
 {
@@ -443,8 +416,6 @@ static void bodies_chosen_to_collide(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_is_found_by_its_handle),
-        cmocka_unit_test(unknown_handles_are_not_found),
         cmocka_unit_test(each_number_of_a_body_counts),
         cmocka_unit_test(ids_of_evicted_bodies_are_forgotten),
         cmocka_unit_test(the_cache_matches_a_list),

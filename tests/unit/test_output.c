@@ -97,68 +97,6 @@ static void without_a_path_no_file_is_opened(void **state)
     assert_true(output_close(output, true));
 }
 
-static void a_page_replaces_an_empty_file_or_a_page(void **state)
-{
-    write_page("new", false);
-    put_file("empty", "");
-    write_page("empty", false);
-    put_file("page", "<!DOCTYPE html>old");
-    write_page("page", false);
-    assert_int_equal(count_files(), 3);
-}
-
-static void only_force_replaces_another_kind(void **state)
-{
-    static const char *const others[] = {"{\"dim\": 3}", "<!DO", "<!DOCTYPE htmlx",
-                                         " <!DOCTYPE html>", "x"};
-    for (size_t i = 0; i < COUNT(others); i++) {
-        put_file("other", others[i]);
-        assert_null(open_page("other", false, NULL));
-        assert_file("other", others[i]);
-        write_page("other", true);
-    }
-    assert_int_equal(count_files(), 1);
-}
-
-static void each_kind_replaces_its_own_kind(void **state)
-{
-    static const char *const text[] = {
-        [OUTPUT_PAGE] = "<!DOCTYPE html>\n<html>",
-        [OUTPUT_REPORT] = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites n",
-        [OUTPUT_PROOF] = "\x1f\x8b\x08",
-        [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
-    const struct output_rules rules = {.force = false}, force = {.force = true};
-    for (int kind = OUTPUT_PAGE; kind <= OUTPUT_LOG; kind++)
-        for (int old = OUTPUT_PAGE; old <= OUTPUT_LOG; old++) {
-            put_file("file", text[old]);
-            assert_int_equal(output_check(&(struct output_options){
-                                 .path = "file", .kind = (enum output_kind) kind, .rules = &rules}),
-                             kind == old && kind != OUTPUT_LOG);
-            assert_true(output_check(&(struct output_options){
-                .path = "file", .kind = (enum output_kind) kind, .rules = &force}));
-        }
-}
-
-static void an_input_is_never_replaced(void **state)
-{
-    for (int force = 0; force < 2; force++) {
-        put_file("input", "<!DOCTYPE html>input");
-        assert_int_equal(symlink("input", "symbolic"), 0);
-        assert_int_equal(link("input", "hard"), 0);
-        const char *const path[] = {"input", "./input", "symbolic", "hard"};
-        for (size_t i = 0; i < 4; i++)
-            for (size_t k = 0; k < 4; k++)
-                assert_null(open_page(path[i], force, path[k]));
-        assert_file("input", "<!DOCTYPE html>input");
-        assert_int_equal(unlink("symbolic") + unlink("hard"), 0);
-    }
-    /* One of several. */
-    char missing[] = "missing", found[] = "input", *const input[] = {missing, found};
-    const struct output_rules rules = {.force = true, .input = input, .input_count = 2};
-    assert_false(output_check(
-        &(struct output_options){.path = "input", .kind = OUTPUT_LOG, .rules = &rules}));
-}
-
 static void a_recording_does_not_go_where_the_program_prints(void **state)
 {
     static const char *const path[] = {"said", "/dev/stdout"};
@@ -235,20 +173,6 @@ static void a_device_is_written_directly(void **state)
 
 /* ---- Closing, and the end of the process ---- */
 
-static void an_output_that_is_not_kept_leaves_the_old_file(void **state)
-{
-    for (int old = 0; old < 2; old++) {
-        if (old)
-            put_file("file", "<!DOCTYPE html>old");
-        struct output *output = open_page("file", false, NULL);
-        fputs("<!DOCTYPE html>new", output->file);
-        assert_int_equal(count_files(), 1 + old);
-        assert_true(output_close(output, false));
-        assert_int_equal(count_files(), old);
-    }
-    assert_file("file", "<!DOCTYPE html>old");
-}
-
 /* Runs end() in a process that is writing a file. Returns its status. */
 static int status_of(void (*end)(struct output *output))
 {
@@ -322,10 +246,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(without_a_path_no_file_is_opened, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_page_replaces_an_empty_file_or_a_page, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(only_force_replaces_another_kind, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(each_kind_replaces_its_own_kind, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_input_is_never_replaced, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_recording_does_not_go_where_the_program_prints, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(symbolic_links_stay, set_up, tear_down),
@@ -337,8 +257,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(no_temporary_file_is_left_when_a_process_ends, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(ignored_signals_stay_ignored, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(an_output_that_is_not_kept_leaves_the_old_file, set_up,
-                                        tear_down),
     };
     /* A shell starts jobs in the background with some of them ignored. */
     for (size_t i = 0; i < SIGNALS; i++)
