@@ -26,8 +26,11 @@ enum {
     VERTICES_OF_LOOK = 64, /* so many vertices add 1 to either cost */
     LOOKS_BOUNDED = 200,
     LOOKS_STEP = 64,
-    CORNERS_STEP = 64,  /* directions by vertices that a step tests in doubles */
-    DIRECTIONS_MAX = 20 /* tried towards an end of the contact */
+    CORNERS_STEP = 64,   /* directions by vertices that a step tests in doubles */
+    DIRECTIONS_MAX = 20, /* tried towards an end of the contact */
+    /* Lists of directions that separated no part of an interval: then verdicts come first. Plates
+     * in one plane have tens of directions that never separate them. */
+    FRUITLESS_MAX = 8
 };
 
 void turn_none(struct turn_decision *out)
@@ -441,15 +444,12 @@ static bool is_next_to_contact(const struct turn_decision *decision, struct turn
                                           : false;
 }
 
-/* Stores a part of an interval, around its middle, over which the direction of the last search
- * separates the frames. Next to the known contact, the interval is then divided at the end of this
- * part. */
+/* Stores a part of an interval, around its middle, over which a direction separates the frames.
+ * Next to the known contact, the interval is then divided at the end of this part. */
 static void remember_apart(struct turn_decision *decision, struct turn_interval interval,
-                           double middle)
+                           double middle, const struct turn_direction *direction)
 {
     const bool next = is_next_to_contact(decision, interval);
-    struct turn_direction direction[3];
-    turn_directions(&decision->path, decision->nearest.direction, 0, direction);
     turn_part(&decision->path, direction, middle, &interval.lo, &interval.hi);
     if (!(turn_distance(&decision->path, direction, interval.lo, interval.hi) > 0))
         return;
@@ -484,8 +484,8 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     const struct turn_path *path = &decision->path;
     struct turn_direction direction[3];
     bool may = false;
-    if (!path->pair.usable || !is_next_to_contact(decision, interval) ||
-        interval.hi - interval.lo <= 2 * short_interval ||
+    if (path->pair.rounded || !path->pair.usable || !is_next_to_contact(decision, interval) ||
+        interval.hi - interval.lo <= 2 * short_interval || decision->fruitless > FRUITLESS_MAX ||
         decision->split == cut_of(decision, interval))
         return false;
     const unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
@@ -496,9 +496,9 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
 
 /* Proves that the frames are apart over an interval if a direction of the last search does, and
  * removes it. Returns the greatest lower bound of their distance that was computed. */
-static double prove_in_doubles(struct turn_decision *decision, struct turn_interval interval)
+static double prove_in_doubles(struct turn_decision *decision, struct turn_interval interval,
+                               struct turn_direction direction[3])
 {
-    struct turn_direction direction[3];
     const unsigned count =
         turn_directions(&decision->path, decision->nearest.direction, 0, direction);
     double most = -INFINITY;
@@ -516,6 +516,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
 {
     const double middle = cut_of(decision, interval);
     const bool is_short = interval.hi - interval.lo <= short_interval;
+    struct turn_direction direction[3];
     if (is_short && is_next_to_contact(decision, interval)) {
         enclose_end(decision, interval);
         return;
@@ -524,18 +525,16 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
     if (decision->exhausted)
         return;
     if (verdict == 0) {
-        if (!may_cross(decision, interval))
-            begin_programs(decision, middle, false);
-        else if (decision->path.pair.rounded)
-            begin_nearest(decision, decision->phase == TURN_LAST ? interval.hi : interval.lo);
-        else
+        if (may_cross(decision, interval))
             begin_corners(decision);
+        else
+            begin_programs(decision, middle, false);
         return;
     }
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
         return;
     if (verdict == FMB_SEPARATED && decision->looked == middle && decision->sure) {
-        const double least = prove_in_doubles(decision, interval);
+        const double least = prove_in_doubles(decision, interval, direction);
         if (least > 0)
             return;
         const bool beside = interval.hi == decision->in[0] || interval.lo == decision->in[1];
@@ -543,7 +542,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
                            least > -close_bound * decision->path.pair.reach;
         if (!is_short && !close) {
             if (!decision->proof)
-                remember_apart(decision, interval, middle);
+                remember_apart(decision, interval, middle, &direction[0]);
             divide(decision, interval);
             return;
         }
@@ -618,6 +617,7 @@ static void divide_open(struct turn_decision *decision, struct turn_interval int
              late ? decision->cleared : interval.hi);
         decision->split = decision->beyond;
     } else {
+        decision->fruitless++;
         decision->stage = TURN_EXACT;
     }
 }
@@ -1088,12 +1088,13 @@ bool turn_begin(const struct frame_pair *frames, unsigned want, double farthest,
     out->want = want;
     out->farthest = farthest;
     out->bounded = bounded;
-    out->overlaps = out->undecided = out->exhausted = out->has_exact = out->sure = false;
+    out->overlaps = out->undecided = out->has_exact = out->sure = false;
+    out->exhausted = bounded && want & FMB_WANT_GAP; /* which takes hundreds of searches */
     out->phase = TURN_VERDICT;
     out->stage = TURN_LOOK;
     out->programs = NULL;
     out->exact.trial = NULL;
-    out->looks = out->next_known = out->apart_count = 0;
+    out->looks = out->next_known = out->apart_count = out->fruitless = 0;
     out->looked = out->nearest_at = out->split = -1;
     out->toward[0] = out->toward[1] = out->toward[2] = 0;
     memset(out->nearest.direction, 0, sizeof out->nearest.direction);

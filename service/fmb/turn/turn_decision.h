@@ -82,7 +82,7 @@ struct turn_decision {
     struct support_nearest nearest; /* of the last search in doubles */
     double looked, toward[FMB_DIM_MAX];
     bool sure; /* the last search in doubles gave a verdict */
-    unsigned looks;
+    unsigned looks, fruitless;
     struct turn_interval stack[TURN_STACK]; /* the next interval is the last element */
     int count;
     double in[2], out[2]; /* first and last: known times of contact, and bounds of all of them */
