@@ -172,7 +172,7 @@ enum { NEAR_VERTICES = 6 };
 
 /* Sets all vertices of a frame that has few, or the vertices of a hull near the nearest point. The
  * edges are all pairs of these vertices; the edges of a cuboid are its components. */
-static void set_features(const struct turn_decision *decision, int f, struct turn_features *out)
+static void set_features(struct turn_decision *decision, int f, struct turn_features *out)
 {
     const struct support_view *view = &decision->path.pair.view[f];
     const struct fmb_frame *frame = view->placed.frame;
@@ -193,6 +193,7 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
     if (out->count > NEAR_VERTICES) {
         double n[FMB_DIM_MAX];
         const double *last = decision->nearest.direction;
+        decision->partial = decision->path.pair.dim == 3;
         turn_body_direction(view, vec3_dot(last, last) > 0 ? last : decision->toward, n);
         out->count = turn_farthest(view, n, f ? -1 : 1, 0, out->vertex);
         /* Takes vertices far apart in the list: neighbours may be nearly collinear. */
@@ -278,6 +279,7 @@ static void begin_corners(struct turn_decision *decision)
     decision->stage = TURN_CORNER;
     decision->outcome = TURN_OPEN;
     decision->corner = decision->corner_count = 0;
+    decision->partial = false;
     decision->corners_at = -1;
     decision->cleared = NAN;
     for (int f = 0; f < 2; f++) {
@@ -626,6 +628,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
 {
     struct turn_exact *exact = &decision->exact;
     const double middle = cut_of(decision, interval);
+    const bool lists_all = decision->corners_at >= 0 || !decision->partial;
     enum turn_outcome outcome;
     if (exact->trial) {
         if (!turn_exact_step(exact, &outcome))
@@ -650,7 +653,8 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
     }
     if (decision->outcome == TURN_APART)
         prove(decision, interval, NULL);
-    else if (decision->outcome == TURN_OPEN && interval.hi - interval.lo > least_interval)
+    else if (decision->outcome == TURN_OPEN && lists_all &&
+             interval.hi - interval.lo > least_interval)
         divide_open(decision, interval);
     else if (decision->outcome == TURN_OPEN && decision->corners_at != interval.hi)
         /* Frames that touch at an end of the interval may separate in the direction there. */

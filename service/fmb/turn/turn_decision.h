@@ -103,6 +103,7 @@ struct turn_decision {
     enum fmb_verdict nearest_verdict;  /* at this time */
     struct turn_corners nearest_edges; /* the edges that this point is on, if nearest_are_edges */
     bool nearest_are_edges;
+    bool partial;              /* in 3D: the directions by vertices are some of those of a hull */
     double corners_at;         /* the time of the listed directions; -1: by vertices */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
