@@ -133,11 +133,13 @@ static void shift(struct question *question, double by, double more, const doubl
     vector_add(question->b.end_origin, by + more, n);
 }
 
-/* n := a unit vector: perpendicular to two edges at that time, or random. */
+/* n := a unit vector: perpendicular to two edges at that time, of capsules to both cores; or
+ * random. */
 static void draw_normal(struct draw *draw, struct question *question, double share, double *n)
 {
     double edge[2][3] = {{0}, {0, 0, 1}}, from[3], to[3], length;
-    const int who = draw_int(draw, 0, 3);
+    const bool both_capsules = question->a.vertex_count == 2 && question->b.vertex_count == 2;
+    const int who = both_capsules ? 2 : draw_int(draw, 0, 3);
     for (int i = 0; i < (question->a.dim == 2 ? 1 : 2); i++) {
         const struct solid *solid = question_solid(question, who == 2 ? i : who & 1);
         double vertex[SOLID_VERTICES_MAX][FMB_DIM_MAX] = {{0}};
@@ -310,15 +312,24 @@ static void clouds(struct draw *draw, const struct family *family, const struct 
     bring_together(draw, draw_little(draw), out);
 }
 
-/* amount: 1: all have a radius. */
+static void capsules(struct draw *draw, const struct family *family, const struct cell *cell,
+                     struct question *out)
+{
+    any_turn(draw, family, cell, out);
+    for (int side = 0; side < 2; side++) {
+        question_solid(out, side)->radius = draw_uniform(draw, 0.01, 1);
+        question_solid(out, side)->vertex_count = 2;
+    }
+    bring_together(draw, draw_little(draw), out);
+}
+
 static void round_ones(struct draw *draw, const struct family *family, const struct cell *cell,
                        struct question *out)
 {
     any_turn(draw, family, cell, out);
     for (int side = 0; side < 2; side++) {
         struct solid *solid = question_solid(out, side);
-        solid->radius =
-            family->amount == 0 && draw_int(draw, 0, 3) == 0 ? 0 : draw_uniform(draw, 0, 1);
+        solid->radius = draw_int(draw, 0, 3) == 0 ? 0 : draw_uniform(draw, 0, 1);
         if (solid->shape == FMB_HULL) /* balls and capsules are included */
             solid->vertex_count = draw_int(draw, 1, 3);
     }
@@ -688,7 +699,7 @@ static const struct family families[] = {
     {"turn-hull-8", "hulls of 1 to 8 vertices", near, .amount = 1e-7, .cells = FAMILY_A_HULL},
     {"turn-hull-100", "hulls of 13 to 100 vertices", clouds, .amount = 100, .cells = FAMILY_A_HULL},
     {"turn-round", "balls, capsules and padded shapes", round_ones},
-    {"turn-capsule", "balls, capsules and padded triangles", round_ones, .amount = 1, .cells = FAMILY_A_HULL},
+    {"turn-capsule", "capsules that nearly touch", capsules, .cells = FAMILY_A_HULL},
 };
 /* clang-format on */
 

@@ -83,6 +83,7 @@ setup() {
     # NAME DIM PAIRS APART TOUCH OVER OPEN | WRONG UNDECIDED LACKS WIDE ...: neither the engine nor the oracle leaves one open.
     [ "$(awk '/^turn-(table|lift|land|tumble|door)/ { count++; open += $7 + $10 } END { print count, open }' <<< "$output")" = "9 0" ]
     [ "$(awk '/^turn-/ && !/^turn-(exponents|flat|thin)/ { wide += $12 } END { print wide }' <<< "$output")" = 0 ]
+    [ "$(awk '/^turn-(hull|round|capsule)/ { undecided += $10 } END { print undecided }' <<< "$output")" = 0 ]
 }
 
 @test "campaigns print their usage, and refuse wrong options with exit code 2" {

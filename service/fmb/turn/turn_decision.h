@@ -13,9 +13,10 @@
  *             Over the interval, the exact polynomials (turn_exact.h) of several directions are
  *             tried. If neither frame has a radius, the directions are given by vertices: all
  *             normals of faces and all products of edges of frames with few vertices; for hulls,
- *             the normals and products near the nearest point. For frames with a radius, and also
- *             over the shortest intervals, the directions point towards the exact nearest point:
- *             they are fixed in either frame, or the product of the edges that the point is on.
+ *             the normals and products near the nearest point. For frames with a radius, for hulls
+ *             that none of these separates, and over the shortest intervals, the directions point
+ *             towards the exact nearest point: they are fixed in either frame, or the product of
+ *             the edges that the point is on.
  *
  * The verdict is OVERLAPPING if the frames overlap at an examined time. Otherwise the intervals
  * cover the window, and the frames do not overlap in any of them; the verdict is TOUCHING if they
