@@ -3,11 +3,11 @@
 
 #include "args.h"
 #include "big_endian.h"
-#include "body_names.h"
 #include "complain.h"
 #include "escape.h"
 #include "json_write.h"
 #include "keyed_hash.h"
+#include "log_read.h"
 #include "number.h"
 #include "progress.h"
 #include "wire_type.h"
@@ -15,7 +15,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,9 +24,9 @@ static const char usage[] =
     "usage: fmb log info [OPTIONS] LOG...\n"
     "\n"
     "Reads event logs and prints for each: its size, the time it covers, its channels\n"
-    "with their message types, counts and sizes, the last name of each body that has\n"
-    "one, and the places that are damaged. A type that does not belong to the service\n"
-    "is printed as the fingerprint of its messages.\n"
+    "with the types, number and bytes of their messages, and the places that are\n"
+    "damaged. A type that does not belong to the service is printed as the fingerprint\n"
+    "of its messages. 'fmb log results' prints what the messages contain.\n"
     "\n"
     "  --json               one line of JSON for each log, with all times in\n"
     "                       microseconds\n"
@@ -36,24 +35,16 @@ static const char usage[] =
     "Exit codes: 0 all logs are intact; 1 one is damaged, and what could be read is\n"
     "printed; 2 wrong usage, or a file that cannot be read or is not a log.\n";
 
-enum { MICROSECONDS = 1000000, NAME_LINES = 100, DAMAGES_LISTED = 20 };
-
-struct tally {
-    int64_t events;
-    int64_t bytes;       /* data of all events */
-    int64_t least, most; /* data of one event, bytes */
-    int64_t begin, end;  /* earliest and latest time, in any order in the log, microseconds */
-};
+enum { MICROSECONDS = 1000000, DAMAGES_LISTED = 20 };
 
 /* The events of one channel and type. */
 struct row {
     UT_hash_handle hh;
-    struct tally tally;
-    const char *type; /* its name, or `text`; NULL: messages of fewer than 8 bytes */
-    char text[24];    /* of the fingerprint */
-    enum log_kind kind;
-    size_t length;       /* of the channel */
-    unsigned char key[]; /* the first 8 bytes of its messages, or fewer; then the channel */
+    int64_t events, bytes; /* bytes: of the data of all events */
+    const char *type;      /* its name, or `text`; NULL: messages of fewer than 8 bytes */
+    char text[24];         /* of the fingerprint */
+    size_t length;         /* of the channel */
+    unsigned char key[];   /* the first 8 bytes of its messages, or fewer; then the channel */
 };
 
 /* Bytes of a key before the channel: those of the data, and how many these are. */
@@ -62,48 +53,15 @@ enum { TYPE_BYTES = 8 + 1 };
 struct info {
     const char *path;
     int64_t size;
-    const char *error; /* why it could not be read to its end; NULL: no error */
-    struct tally all;
-    int64_t backward; /* events with an earlier time than the event before them */
-    int64_t utime;    /* of the last event */
+    const char *error;     /* why it could not be read to its end; NULL: no error */
+    int64_t events, bytes; /* of all rows */
+    int64_t begin, end;    /* earliest and latest time, in any order in the log, microseconds */
     int64_t damages, damaged;
     struct log_damage damage[DAMAGES_LISTED]; /* the first ones */
-    struct body_names *names;
-    struct row *rows; /* owned */
+    struct row *rows;                         /* owned */
 };
 
 /* ---- Events ---- */
-
-static void add_event(struct tally *tally, const struct log_event *event)
-{
-    const int64_t size = (int64_t) event->size;
-    if (tally->events++ == 0)
-        *tally = (struct tally){1, 0, size, size, event->utime, event->utime};
-    tally->bytes += size;
-    tally->least = size < tally->least ? size : tally->least;
-    tally->most = size > tally->most ? size : tally->most;
-    tally->begin = event->utime < tally->begin ? event->utime : tally->begin;
-    tally->end = event->utime > tally->end ? event->utime : tally->end;
-}
-
-/* Sets the type of the messages, and their kind if they may name bodies. */
-static void set_type(struct row *row, int64_t fingerprint)
-{
-    static const struct {
-        const char *name;
-        enum log_kind kind;
-    } kinds[] = {{"fmb_msgs.pair_query_t", LOG_PAIR_QUERY},
-                 {"fmb_msgs.scene_query_t", LOG_SCENE_QUERY},
-                 {"fmb_msgs.names_t", LOG_NAMES}};
-    row->type = wire_type_name(fingerprint);
-    if (!row->type) {
-        snprintf(row->text, sizeof row->text, "0x%016" PRIx64, (uint64_t) fingerprint);
-        row->type = row->text;
-    }
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (strcmp(row->type, kinds[i].name) == 0)
-            row->kind = kinds[i].kind;
-}
 
 static struct row *row_of(struct info *info, const struct log_event *event)
 {
@@ -121,9 +79,12 @@ static struct row *row_of(struct info *info, const struct log_event *event)
     row = allocate(1, sizeof *row + size);
     memcpy(row->key, key, size);
     row->length = event->channel_length;
-    row->kind = LOG_OTHER;
-    if (event->kept >= 8)
-        set_type(row, (int64_t) big_endian_64(event->data));
+    if (event->kept >= 8) {
+        const uint64_t fingerprint = big_endian_64(event->data);
+        snprintf(row->text, sizeof row->text, "0x%016" PRIx64, fingerprint);
+        row->type = wire_type_name((int64_t) fingerprint);
+        row->type = row->type ? row->type : row->text;
+    }
     HASH_ADD_KEYPTR(hh, info->rows, row->key, size, row);
     return row;
 }
@@ -131,12 +92,13 @@ static struct row *row_of(struct info *info, const struct log_event *event)
 static void take_event(struct info *info, const struct log_event *event)
 {
     struct row *row = row_of(info, event);
-    info->backward += info->all.events > 0 && event->utime < info->utime;
-    info->utime = event->utime;
-    add_event(&info->all, event);
-    add_event(&row->tally, event);
-    if (row->kind != LOG_OTHER)
-        body_names_take_message(info->names, row->kind, event->data, (uint32_t) event->kept);
+    row->events++;
+    row->bytes += (int64_t) event->size;
+    info->bytes += (int64_t) event->size;
+    if (info->events++ == 0)
+        info->begin = info->end = event->utime;
+    info->begin = event->utime < info->begin ? event->utime : info->begin;
+    info->end = event->utime > info->end ? event->utime : info->end;
 }
 
 static void take_damage(struct info *info, const struct log_damage *damage)
@@ -178,51 +140,16 @@ static void read_all(struct log_reader *reader, struct info *info)
 
 /* ---- For people ---- */
 
-/* From the first to the last event, microseconds; does not overflow. */
-static uint64_t span_of(const struct tally *tally)
-{
-    return (uint64_t) tally->end - (uint64_t) tally->begin;
-}
-
-/* Events a second. The first event does not count: time begins with it. */
-static double rate_of(const struct tally *tally)
-{
-    return (double) (tally->events - 1) / (1e-6 * (double) span_of(tally));
-}
-
 static void print_channels(const struct info *info)
 {
-    printf("  %10s %14s %8s %8s %12s %12s  %-27s %s\n", "events", "bytes", "least", "most",
-           "first s", "last s", "type", "channel");
+    char events[NUMBER_TEXT_MAX], bytes[NUMBER_TEXT_MAX];
+    printf("  %10s %14s  %-27s %s\n", "events", "bytes", "type", "channel");
     for (const struct row *row = info->rows; row; row = row->hh.next) {
-        const struct tally *tally = &row->tally;
-        char events[NUMBER_TEXT_MAX], bytes[NUMBER_TEXT_MAX];
-        const uint64_t begin = (uint64_t) info->all.begin;
-        printf("  %10s %14s %8" PRId64 " %8" PRId64 " %12.3f %12.3f  %-27s ",
-               number_grouped(tally->events, events), number_grouped(tally->bytes, bytes),
-               tally->least, tally->most, 1e-6 * (double) ((uint64_t) tally->begin - begin),
-               1e-6 * (double) ((uint64_t) tally->end - begin),
-               row->type ? row->type : "(too short)");
+        printf("  %10s %14s  %-27s ", number_grouped(row->events, events),
+               number_grouped(row->bytes, bytes), row->type ? row->type : "(too short)");
         escape(stdout, ESCAPE_TERMINAL, (const char *) row->key + TYPE_BYTES, row->length);
         putchar('\n');
     }
-}
-
-static void print_names(struct body_names *names)
-{
-    char text[NUMBER_TEXT_MAX];
-    const int32_t count = body_names_count(names);
-    const struct body_name *name = body_names_sorted(names);
-    if (count > 0)
-        puts("  names:");
-    for (int i = 0; name && i < NAME_LINES; i++, name = name->hh.next) {
-        printf("    client %" PRId64 ", body %" PRId64 ": ", name->key.client_id,
-               name->key.body_id);
-        escape_text(stdout, name->name);
-        putchar('\n');
-    }
-    if (count > NAME_LINES)
-        printf("    and %s more\n", number_grouped(count - NAME_LINES, text));
 }
 
 static void print_time(const char *name, int64_t utime)
@@ -236,20 +163,13 @@ static void print_time(const char *name, int64_t utime)
     printf("  %-5s %s.%06" PRId64 " UTC\n", name, text, part);
 }
 
+/* The difference of the times does not overflow as an unsigned number. */
 static void print_span(const struct info *info)
 {
-    const uint64_t span = span_of(&info->all);
-    char text[NUMBER_TEXT_MAX];
-    print_time("from", info->all.begin);
-    print_time("to", info->all.end);
-    printf("  %" PRIu64 ".%06" PRIu64 " s", span / MICROSECONDS, span % MICROSECONDS);
-    if (span > 0)
-        printf(", %s events a second", number_short(rate_of(&info->all), text));
-    if (info->backward > 0) {
-        fputs("; time goes back ", stdout);
-        number_count(stdout, info->backward, "time", "times");
-    }
-    putchar('\n');
+    const uint64_t span = (uint64_t) info->end - (uint64_t) info->begin;
+    print_time("from", info->begin);
+    print_time("to", info->end);
+    printf("  %" PRIu64 ".%06" PRIu64 " s\n", span / MICROSECONDS, span % MICROSECONDS);
 }
 
 static void print_damage(const struct info *info)
@@ -276,11 +196,10 @@ static void print_text(const struct info *info)
         return;
     }
     number_count(stdout, info->size, "byte, ", "bytes, ");
-    number_count(stdout, info->all.events, "event\n", "events\n");
-    if (info->all.events > 0) {
+    number_count(stdout, info->events, "event\n", "events\n");
+    if (info->events > 0) {
         print_span(info);
         print_channels(info);
-        print_names(info->names);
     }
     if (info->damages > 0)
         print_damage(info);
@@ -291,32 +210,6 @@ static void print_text(const struct info *info)
 }
 
 /* ---- For programs ---- */
-
-/* There are no times without events. */
-static void write_tally(struct json_writer *json, const struct tally *tally)
-{
-    json_integer(json, "events", tally->events);
-    json_integer(json, "bytes", tally->bytes);
-    json_integer(json, "least", tally->least);
-    json_integer(json, "most", tally->most);
-    if (tally->events > 0) {
-        json_integer(json, "begin", tally->begin);
-        json_integer(json, "end", tally->end);
-    }
-}
-
-static void write_names(struct json_writer *json, struct body_names *names)
-{
-    json_begin(json, "names", '[');
-    for (const struct body_name *name = body_names_sorted(names); name; name = name->hh.next) {
-        json_begin(json, NULL, '{');
-        json_integer(json, "client_id", name->key.client_id);
-        json_integer(json, "body_id", name->key.body_id);
-        json_string(json, "name", name->name);
-        json_end(json, '}');
-    }
-    json_end(json, ']');
-}
 
 static void write_damage(struct json_writer *json, const struct info *info)
 {
@@ -337,23 +230,25 @@ static void write_damage(struct json_writer *json, const struct info *info)
 
 static void print_json(const struct info *info)
 {
-    const struct tally *all = &info->all;
     struct json_writer json = json_object(stdout);
     json_string(&json, "log", info->path);
     json_integer(&json, "size", info->size);
-    write_tally(&json, all);
-    json_number(&json, "rate", span_of(all) > 0 ? rate_of(all) : NAN);
-    json_integer(&json, "backward", info->backward);
+    json_integer(&json, "events", info->events);
+    json_integer(&json, "bytes", info->bytes);
+    if (info->events > 0) {
+        json_integer(&json, "begin", info->begin);
+        json_integer(&json, "end", info->end);
+    }
     json_begin(&json, "channels", '[');
     for (const struct row *row = info->rows; row; row = row->hh.next) {
         json_begin(&json, NULL, '{');
         json_bytes(&json, "channel", (const char *) row->key + TYPE_BYTES, row->length);
         json_string(&json, "type", row->type);
-        write_tally(&json, &row->tally);
+        json_integer(&json, "events", row->events);
+        json_integer(&json, "bytes", row->bytes);
         json_end(&json, '}');
     }
     json_end(&json, ']');
-    write_names(&json, info->names);
     write_damage(&json, info);
     if (info->error)
         json_string(&json, "error", info->error);
@@ -371,7 +266,7 @@ static int refuse(const char *path, const char *why)
 
 static int report(bool json, const struct info *info)
 {
-    if (!info->error && info->all.events == 0 && info->size > 0)
+    if (!info->error && info->events == 0 && info->size > 0)
         return refuse(info->path, "no event log: there is no event in it");
     (json ? print_json : print_text)(info);
     if (info->error)
@@ -385,11 +280,10 @@ static int run_info(bool json, const char *path)
     struct log_reader *reader = log_open(path, why);
     if (!reader)
         return refuse(path, why);
-    struct info info = {.path = path, .size = log_size(reader), .names = body_names_open()};
+    struct info info = {.path = path, .size = log_size(reader)};
     read_all(reader, &info);
     const int code = report(json, &info);
     HASH_FREE(info.rows);
-    body_names_close(info.names);
     log_close(reader);
     return code;
 }

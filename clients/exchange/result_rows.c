@@ -2,6 +2,7 @@
 
 #include "escape.h"
 #include "exchange.h"
+#include "keyed_hash.h"
 #include "match.h"
 
 #include <inttypes.h>

@@ -1,9 +1,20 @@
 #include "body_names.h"
 
+#include "keyed_hash.h"
 #include "wire.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+struct body_key {
+    int64_t client_id, body_id;
+};
+
+struct body_name {
+    struct body_key key;
+    char name[QUERY_NAME_MAX + 1];
+    UT_hash_handle hh;
+};
 
 struct body_names {
     struct body_name *table;
@@ -81,20 +92,6 @@ const char *body_names_find(const struct body_names *names, int64_t client_id, i
 int32_t body_names_count(const struct body_names *names)
 {
     return (int32_t) HASH_COUNT(names->table);
-}
-
-static int compare(const struct body_name *left, const struct body_name *right)
-{
-    const struct body_key *a = &left->key, *b = &right->key;
-    if (a->client_id != b->client_id)
-        return a->client_id < b->client_id ? -1 : 1;
-    return (a->body_id > b->body_id) - (a->body_id < b->body_id);
-}
-
-const struct body_name *body_names_sorted(struct body_names *names)
-{
-    HASH_SORT(names->table, compare);
-    return names->table;
 }
 
 bool body_names_write(const struct body_names *names, int64_t utime, log_sink *sink, void *user)

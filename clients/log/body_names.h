@@ -5,20 +5,9 @@
 #ifndef BODY_NAMES_H
 #define BODY_NAMES_H
 
-#include "keyed_hash.h"
 #include "logged_query.h"
 
 enum { BODY_NAMES_MAX = 1 << 14 };
-
-struct body_key {
-    int64_t client_id, body_id;
-};
-
-struct body_name {
-    struct body_key key;
-    char name[QUERY_NAME_MAX + 1];
-    UT_hash_handle hh;
-};
 
 struct body_names;
 
@@ -38,9 +27,6 @@ const char *body_names_take_message(struct body_names *names, enum log_kind kind
 const char *body_names_find(const struct body_names *names, int64_t client_id, int64_t body_id);
 
 int32_t body_names_count(const struct body_names *names);
-
-/* The first name in the order of client and body ids; NULL: none. hh.next is the next one. */
-const struct body_name *body_names_sorted(struct body_names *names);
 
 /* Writes all names as names_t messages; none if there are none. Returns false as soon as sink does.
  */

@@ -512,13 +512,10 @@ END
     finish_record
     is '.lost == 0 and (.files | length) > 3'
     second=$log.001
-    client=$("$FMB" log info --json "$second" | jq .names[0].client_id)
     cut=$BATS_TEST_TMPDIR/cut
     "$FMB" log cut --json --from 0.0001 --channel 'FMB_SCENE.*|FMB_DEFINITION' "$second" -o "$cut" > "$report"
     is '.added_names == 2 and .names == 0 and .unknown_handles == 0 and .scene_queries > 0'
     for file in "$second" "$cut"; do
-        [ "$("$FMB" log info --json "$file" | jq -c '[.names[] | [.body_id, .name]]')" = '[[1,"table <top>"],[3,"näpf"]]' ]
-        grep -qx "    client $client, body 1: table <top>" <<< "$("$FMB" log info "$file")"
         event=$("$TOOLS/events" "$file" | awk '$3 == "FMB_SCENE_QUERY" && !found++ { print $1 }')
         "$FMB" log scene --event "$event" "$file" > "$BATS_TEST_TMPDIR/again.json"
         [ "$(jq -c '[.bodies[].name]' "$BATS_TEST_TMPDIR/again.json")" = '["table <top>",null,"näpf"]' ]
