@@ -21,7 +21,7 @@ static const char usage[] =
     "  -o, --output FILE    the new log\n"
     "  --force              FILE may exist already\n"
     "  --from S, --to S     events logged from S on and before S, in seconds since\n"
-    "                       the first event, as in 'fmb replay'\n"
+    "                       the first event\n"
     "  --channel REGEX      events on channels whose whole name matches the POSIX\n"
     "                       extended regular expression\n"
     "  --json               one line of JSON in place of the text\n"
@@ -117,7 +117,9 @@ int cmd_log_cut(int argc, char **argv)
                         .operands_max = 4096};
     int code = args_parse(&args, argc, argv);
     if (code == ARGS_RUN && ((!options.output.path && !args_error(&args, "expected -o FILE")) ||
-                             !args_check_span(&args, choice->from, choice->to)))
+                             (choice->from >= choice->to &&
+                              !args_error(&args, "--to: expected more than --from, %g, found %g",
+                                          choice->from, choice->to))))
         code = ARGS_USAGE;
     if (code == ARGS_RUN) {
         options.log = rules.input = args.operands;

@@ -14,7 +14,6 @@
 #include "replay_output.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,9 +48,6 @@ static const char usage[] =
     "                       query: of the position of a body, at the beginning or the\n"
     "                       end, plus its reach. Directions, witness points and\n"
     "                       certificates are not compared\n"
-    "  --from S, --to S     only queries logged from S on and before S, in seconds\n"
-    "                       since the first event; the remainder is read for\n"
-    "                       definitions and results\n"
     "  --frames N           capacity of the cache, in frames, as fmbd --frames\n"
     "                       (65536)\n"
     "  --bus                the service on the bus answers, not this process, as fast\n"
@@ -81,9 +77,10 @@ static const char usage[] =
     "contradict the first are reported and counted as different. Times to decide are\n"
     "shown, not compared.\n"
     "\n"
-    "The logs are read twice. Memory: some 300 bytes for each distinct body, and 100\n"
-    "bytes for each query and each result, also of a golden log, for whose results it\n"
-    "is 200; with a golden log of other clients, 1 kB for each query.\n"
+    "To replay a part of a log, copy it by 'fmb log cut'. The logs are read twice.\n"
+    "Memory: some 300 bytes for each distinct body, and 100 bytes for each query and\n"
+    "each result, also of a golden log, for whose results it is 200; with a golden\n"
+    "log of other clients, 1 kB for each query.\n"
     "\n"
     "Exit codes: 0 all the same; 1 something differs; 2 unusable: a log cannot be\n"
     "read or is damaged ('fmb log cut' copies what is intact), a message on the\n"
@@ -174,13 +171,8 @@ static bool write_junit(const struct replay_run *run, struct tally *tally)
 static bool complain_nothing(const struct replay_arguments *options, const struct tally *all,
                              const struct tally_channel *both)
 {
-    const bool in_part = isfinite(options->replay.from) || isfinite(options->replay.to);
     if (all->events == 0)
         complain("%s holds no events: is it an event log?", options->replay.log[0]);
-    else if (both->queries == 0 && in_part)
-        complain(
-            "there are no queries of this service from --from to --to; 'fmb log info' prints "
-            "the times of a log");
     else if (both->queries == 0)
         complain(
             "there are no queries of this service; 'fmb log info' lists the channels of a log, "
@@ -381,9 +373,7 @@ int cmd_replay(int argc, char **argv)
 {
     struct output_rules rules = {.force = false};
     struct replay_arguments options = {
-        .replay = {.from = -INFINITY,
-                   .to = INFINITY,
-                   .write_golden = {.kind = OUTPUT_LOG, .rules = &rules}},
+        .replay.write_golden = {.kind = OUTPUT_LOG, .rules = &rules},
         .junit = {.kind = OUTPUT_REPORT, .rules = &rules, .other = &options.replay.write_golden},
         .html = {.kind = OUTPUT_PAGE, .rules = &rules, .other = &options.junit},
         .limit = 1000,
@@ -395,8 +385,6 @@ int cmd_replay(int argc, char **argv)
         {"write-golden", ARGS_TEXT, .out = &replay->write_golden.path},
         {"force", ARGS_FLAG, .out = &rules.force},
         {"tolerance", ARGS_NUMBER, &replay->compare.tolerance, .high = 1},
-        {"from", ARGS_NUMBER, &replay->from, .high = 1e12},
-        {"to", ARGS_NUMBER, &replay->to, .high = 1e12},
         {"frames", ARGS_INTEGER, &options.frames, .low = 1, .high = CACHE_FRAMES_MAX},
         {"json", ARGS_FLAG, .out = &options.json},
         {"junit", ARGS_TEXT, .out = &options.junit.path},
@@ -413,7 +401,7 @@ int cmd_replay(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_bus(&args, &options) || !args_check_span(&args, replay->from, replay->to))
+    if (!check_bus(&args, &options))
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;

@@ -59,11 +59,6 @@ bool args_exclude(const struct args *args, bool one, bool other, const char *nam
     return !(one && other) || args_error(args, "%s exclude each other", names);
 }
 
-bool args_check_span(const struct args *args, double from, double to)
-{
-    return from < to || args_error(args, "--to: expected more than --from, %g, found %g", from, to);
-}
-
 /* ---- Options --------------------------------------------------------------------------------- */
 
 bool args_prefix(const struct args *args, void *out)

@@ -81,9 +81,6 @@ bool args_prefix(const struct args *args, void *out);
  * error. */
 bool args_exclude(const struct args *args, bool one, bool other, const char *names);
 
-/* Checks that --from is less than --to. Returns false after an error. */
-bool args_check_span(const struct args *args, double from, double to);
-
 /* Returns the URL of a bus for messages; valid as long as the options. */
 const char *args_bus_name(const struct args_bus *bus);
 

@@ -83,11 +83,9 @@ static void read_logs(struct cutter *cut,
 static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_event *event,
                       struct match_item *out)
 {
-    if (match_read(out, kind, event, &cut->result))
+    if (match_read(out, kind, cut->input.log, event, &cut->result))
         return false;
-    out->place.log = cut->input.log;
-    out->place.in_range =
-        log_choice_has_time(&cut->options->choice, cut->first_utime, event->utime);
+    out->chosen = log_choice_has_time(&cut->options->choice, cut->first_utime, event->utime);
     return out->is_result ||
            !logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept);
 }
@@ -194,7 +192,7 @@ static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_e
     if (!log_choice_has_channel(choice, event->channel))
         return false;
     if (query)
-        return query->place.in_range;
+        return query->chosen;
     return log_choice_has_time(choice, cut->first_utime, event->utime) &&
            (kind != LOG_NAMES || log_choice_is_all(choice));
 }

@@ -26,12 +26,16 @@ const char *match_key_of(enum log_kind kind, const struct log_event *event, stru
     return error;
 }
 
-const char *match_read(struct match_item *out, enum log_kind kind, const struct log_event *event,
-                       struct logged_result *memory)
+struct match_place match_place_of(int log, const struct log_event *event)
 {
-    *out = (struct match_item){
-        .place = {.number = event->number, .offset = event->offset, .utime = event->utime},
-        .is_result = log_kind_is_result(kind)};
+    return (struct match_place){log, event->number, event->offset, event->utime};
+}
+
+const char *match_read(struct match_item *out, enum log_kind kind, int log,
+                       const struct log_event *event, struct logged_result *memory)
+{
+    *out = (struct match_item){.place = match_place_of(log, event),
+                               .is_result = log_kind_is_result(kind)};
     const char *error = match_key_of(kind, event, &out->key);
     if (error || !out->is_result || !memory)
         return error;

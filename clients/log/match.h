@@ -27,8 +27,7 @@ const char *match_key_of(enum log_kind kind, const struct log_event *event, stru
 
 /* The position of an event. */
 struct match_place {
-    int32_t log;   /* index of the log */
-    bool in_range; /* the event is chosen, by its time or as log_cut.h says */
+    int log; /* its index */
     int64_t number, offset, utime;
 };
 
@@ -41,6 +40,7 @@ struct match_item {
     bool transient; /* of a result: logged_status_is_transient() */
     bool second;    /* of a result: its query has another one */
     /* For the user: */
+    bool chosen;        /* a query that is copied (log_cut.h) */
     bool unreadable;    /* only the key can be read */
     bool sent_whole;    /* sent with frames, after UNKNOWN_BODY */
     bool defined;       /* sent_whole: the frames of all bodies are known */
@@ -50,11 +50,13 @@ struct match_item {
     int64_t own_offset; /* there */
 };
 
-/* Reads a query or a result: its key, its place in the current log, and whether it is transient.
- * In: memory for a decoded result; NULL: only the key is read. Returns NULL; or a static text: why
- * it cannot be decoded. Of a query only the header is read. */
-const char *match_read(struct match_item *out, enum log_kind kind, const struct log_event *event,
-                       struct logged_result *memory);
+struct match_place match_place_of(int log, const struct log_event *event);
+
+/* Reads a query or a result of a log: its key, its place, and whether it is transient. In: memory
+ * for a decoded result; NULL: only the key is read. Returns NULL; or a static text: why it cannot
+ * be decoded. Of a query only the header is read. */
+const char *match_read(struct match_item *out, enum log_kind kind, int log,
+                       const struct log_event *event, struct logged_result *memory);
 
 struct match {
     struct match_item *item; /* owned, [count], in the order of match_add() */

@@ -21,42 +21,18 @@ static void fail_golden(struct replay *replay, int64_t offset, const char *what)
     replay->failed = true;
 }
 
-static bool in_time(const struct replay *replay, int64_t utime)
-{
-    const double seconds = ((double) utime - (double) replay->tally->first_utime) / 1e6;
-    return seconds >= replay->options->from && seconds < replay->options->to;
-}
-
-static struct match_place place_of(const struct replay *replay, const struct log_event *event)
-{
-    return (struct match_place){.log = replay->input.log,
-                                .in_range = in_golden(replay) || in_time(replay, event->utime),
-                                .number = event->number,
-                                .offset = event->offset,
-                                .utime = event->utime};
-}
-
-/* Reads a query or a result; memory: NULL: only its key. */
-static const char *read_item(struct replay *replay, enum log_kind kind,
-                             const struct log_event *event, struct logged_result *memory,
-                             struct match_item *out)
-{
-    const char *error = match_read(out, kind, event, memory);
-    out->place = place_of(replay, event);
-    return error;
-}
-
 /* Registers a query or a result. error: why a query cannot be decoded; NULL: it can. */
 static void take_message(struct replay *replay, enum log_kind kind, const struct log_event *event,
                          const char *error)
 {
     struct match_item item;
     const bool golden = replay->options->golden;
-    const char *unread = read_item(replay, kind, event, golden ? NULL : &replay->then, &item);
+    const char *unread =
+        match_read(&item, kind, replay->input.log, event, golden ? NULL : &replay->then);
     struct tally_channel *channel = replay_channel(replay, &item);
-    channel->results += item.is_result && !unread && !golden && item.place.in_range;
+    channel->results += item.is_result && !unread && !golden;
     item.unreadable = unread || error;
-    if (item.unreadable && item.place.in_range) {
+    if (item.unreadable) {
         channel->unreadable[item.is_result]++;
         replay_report(replay, &item, unread ? unread : error);
     }
@@ -67,7 +43,7 @@ static void take_message(struct replay *replay, enum log_kind kind, const struct
 static void count_definition(struct replay *replay, const struct log_event *event,
                              const char *error)
 {
-    const struct match_place place = place_of(replay, event);
+    const struct match_place place = match_place_of(replay->input.log, event);
     replay->tally[place.log].definitions += !error;
     replay->tally[place.log].unreadable_definitions += error != NULL;
     if (error)
@@ -82,7 +58,7 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
         body_names_take_message(replay->golden_names, kind, event->data, (uint32_t) event->kept);
     if (kind >= LOG_STATUS)
         return;
-    const char *error = read_item(replay, kind, event, &replay->then, &item);
+    const char *error = match_read(&item, kind, replay->input.log, event, &replay->then);
     if (error && item.is_result)
         fail_golden(replay, event->offset, error);
     if (error)

@@ -29,8 +29,7 @@ struct replay_options {
     const char *golden; /* path of a log with results to compare with; NULL: the recorded ones */
     struct output_options write_golden; /* for the new results */
     struct compare_options compare;
-    double from, to; /* queries with from <= t < to, log time in seconds since the first event */
-    size_t frames;   /* capacity of the cache in this process */
+    size_t frames;                        /* capacity of the cache in this process */
     struct body_names *names;             /* receives the names of bodies; NULL: none */
     bool labels;                          /* count scenes by their label (tally.h) */
     struct page *page;                    /* receives what was replayed; NULL: none */

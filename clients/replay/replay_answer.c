@@ -146,7 +146,7 @@ void replay_answer_queries(struct replay *replay)
     const int64_t size = input_size(&replay->input), half = size / 2;
     for (size_t i = 0; i < count && !replay_has_ended(replay); i++) {
         struct match_item *item = &replay->match.item[i];
-        if (item->is_result || item->unreadable || !item->place.in_range)
+        if (item->is_result || item->unreadable)
             continue;
         answer_query(replay, item);
         send_again(replay);

@@ -269,7 +269,7 @@ void replay_compare_results(struct replay *replay)
 {
     for (size_t i = 0; i < replay->match.count; i++) {
         const struct match_item *item = &replay->match.item[i];
-        if (!item->is_result || !item->place.in_range)
+        if (!item->is_result)
             continue;
         if (!item->other)
             replay_channel(replay, item)->unmatched++;

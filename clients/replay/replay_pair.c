@@ -212,7 +212,7 @@ static void report_left_over(struct replay *replay, const struct match *match)
 {
     for (size_t i = 0; i < match->count; i++) {
         const struct match_item *item = &match->item[i];
-        if (!item->left_over || !item->place.in_range)
+        if (!item->left_over)
             continue;
         replay_channel(replay, item)->left_over++;
         replay_report(replay, item, "has no counterpart in the other recording");

@@ -104,13 +104,9 @@ mesh:a.obj --json=1 b.obj
 replay:--tolerance -1 LOG
 replay:--tolerance nan LOG
 replay:--tolerance x LOG
-replay:--from -1 LOG
-replay:--from inf LOG
 replay:--limit -1 LOG
 replay:--frames 0 LOG
 replay:--frm 1 LOG
-replay:--from 10 --to 5 LOG
-replay:--from 0.2 --to 0.2 LOG
 replay:--golden
 replay:-p a/b LOG
 replay:--bus --frames 9 LOG

@@ -116,13 +116,8 @@ static const struct replay_sink replay_sink = {on_found, on_unreadable, on_damag
 
 static void replay(char *log, struct query_outcomes *out)
 {
-    struct replay_options options = {.log = &log,
-                                     .log_count = 1,
-                                     .prefix = "",
-                                     .from = -INFINITY,
-                                     .to = INFINITY,
-                                     .frames = 1000,
-                                     .page = (struct page *) &taken};
+    struct replay_options options = {
+        .log = &log, .log_count = 1, .prefix = "", .frames = 1000, .page = (struct page *) &taken};
     struct tally tally = {.events = 0};
     out->count = 0;
     taken = out;

@@ -29,8 +29,6 @@ static struct replay_options options(void)
                                    .log_count = 1,
                                    .prefix = "",
                                    .write_golden = {.kind = OUTPUT_LOG, .rules = &rules},
-                                   .from = -INFINITY,
-                                   .to = INFINITY,
                                    .frames = 1000};
 }
 
@@ -981,31 +979,6 @@ static void check_golden(void)
     rmdir(folder);
 }
 
-/* Of several ranges of time what the whole has. */
-static void check_ranges(const struct replay_report *report)
-{
-    static const double ends[] = {-INFINITY, -0.01, 0.013, 0.02, 0.05, INFINITY};
-    struct tally sum = {.events = 0};
-    for (int i = 0; i < 5; i++) {
-        struct replay_options with = options();
-        with.from = ends[i];
-        with.to = ends[i + 1];
-        struct replay_report range = replay_report_of(&with);
-        tally_add(&sum, &range.tally);
-        replay_report_free(&range);
-    }
-    for (int i = 0; i < TALLY_CHANNELS; i++) {
-        const struct tally_channel *a = &sum.channel[i], *b = &report->tally.channel[i];
-        assert_int_equal(a->queries, b->queries);
-        assert_int_equal(a->pairs, b->pairs);
-        assert_int_equal(a->results, b->results);
-        assert_int_equal(a->unmatched, b->unmatched);
-        assert_int_equal(a->contradictions, b->contradictions);
-        assert_memory_equal(a->outcome, b->outcome, sizeof a->outcome);
-        assert_memory_equal(a->unreadable, b->unreadable, sizeof a->unreadable);
-    }
-}
-
 static void check_ways(int ways)
 {
     make_log(ways, 150);
@@ -1018,7 +991,6 @@ static void check_ways(int ways)
         assert_int_equal(tally_both(&report.tally).contradictions, 0);
     if (ways & DEFINED && !(ways & (SPOILED | DAMAGE)))
         assert_int_equal(outcome(&report, REPLAY_UNDEFINED), 0);
-    check_ranges(&report);
     if (!(ways & (REPEATS | SPOILED | DAMAGE)))
         check_golden();
     replay_report_free(&report);
