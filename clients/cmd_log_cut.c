@@ -70,7 +70,6 @@ static void print_json(const struct log_cut_counts *counts, int code)
     json_integer(&json, "kept_bytes", counts->kept_bytes);
     for (int kind = 0; kind < LOG_KINDS; kind++)
         json_integer(&json, log_kind_name[kind].json, counts->kept[kind]);
-    json_integer(&json, "added_definitions", counts->definitions);
     json_integer(&json, "added_bodies", counts->defined);
     json_integer(&json, "added_names", counts->names);
     json_integer(&json, "unknown_handles", counts->unknown);

@@ -274,8 +274,10 @@ const char *result_rows_take(struct result_rows *results, enum log_kind kind, in
 {
     if (log_kind_is_query(kind))
         return take_query(results, kind, number, bytes, size);
+    if (kind == LOG_NAMES)
+        return body_names_read(results->names, bytes, size);
     if (!log_kind_is_result(kind))
-        return body_names_take_message(results->names, kind, bytes, size);
+        return NULL;
     const char *error = logged_result_read(&results->result, log_kind_query_of(kind), bytes, size);
     return error ? error : print_result(results);
 }

@@ -18,7 +18,6 @@ struct body_name {
 
 struct body_names {
     struct body_name *table;
-    struct logged_query query;
     struct names read;
 };
 
@@ -66,20 +65,12 @@ void body_names_take(struct body_names *names, const struct logged_query *query)
             query->placement[i].placed.name);
 }
 
-const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
-                                    uint32_t size)
+const char *body_names_read(struct body_names *names, const void *bytes, uint32_t size)
 {
-    const char *error = NULL;
-    if (names && log_kind_is_query(kind)) {
-        error = logged_query_read(&names->query, kind, bytes, size);
-        if (!error)
-            body_names_take(names, &names->query);
-    } else if (names && kind == LOG_NAMES) {
-        const struct names *read = &names->read;
-        error = wire_read_names(bytes, size, &names->read);
-        for (int32_t i = 0; !error && i < read->count; i++)
-            set(names, read->client_id[i], read->body_id[i], read->name[i]);
-    }
+    const struct names *read = &names->read;
+    const char *error = wire_read_names(bytes, size, &names->read);
+    for (int32_t i = 0; !error && i < read->count; i++)
+        set(names, read->client_id[i], read->body_id[i], read->name[i]);
     return error;
 }
 

@@ -18,10 +18,8 @@ void body_names_close(struct body_names *names); /* may be NULL */
 /* Sets the names that a client's query gives to its bodies. */
 void body_names_take(struct body_names *names, const struct logged_query *query);
 
-/* Sets the names in a message: a pair query, a scene query, or a names_t; others have none. names
- * may be NULL. Returns NULL; or a static text: why it cannot be decoded. */
-const char *body_names_take_message(struct body_names *names, enum log_kind kind, const void *bytes,
-                                    uint32_t size);
+/* Sets the names in a names_t. Returns NULL; or a static text: why it cannot be decoded. */
+const char *body_names_read(struct body_names *names, const void *bytes, uint32_t size);
 
 /* The name; NULL: none. names may be NULL: there are none. */
 const char *body_names_find(const struct body_names *names, int64_t client_id, int64_t body_id);

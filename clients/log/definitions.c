@@ -5,6 +5,7 @@
 #include "log_write.h"
 #include "logged_query.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,9 +25,7 @@ struct definitions {
     size_t bytes;                              /* of all bodies */
     int64_t file;
     struct logged_query query;
-    struct definition read;
-    struct definition written; /* the message that is being packed; size: of its bodies */
-    size_t size;
+    struct definition definition; /* that is read or written */
     unsigned char message[QUERY_BYTES_MAX];
 };
 
@@ -118,7 +117,7 @@ void definitions_add_query(struct definitions *definitions, const struct logged_
 const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
                                     enum log_kind kind, const void *bytes, uint32_t size)
 {
-    struct definition *read = &definitions->read;
+    struct definition *read = &definitions->definition;
     struct logged_query *query = &definitions->query;
     if (log_kind_is_query(kind)) {
         const char *error = logged_query_read(query, kind, bytes, size);
@@ -128,8 +127,10 @@ const char *definitions_add_message(struct definitions *definitions, struct body
             body_names_take(names, query);
         return error;
     }
+    if (kind == LOG_NAMES && names)
+        return body_names_read(names, bytes, size);
     if (kind != LOG_DEFINITION)
-        return body_names_take_message(names, kind, bytes, size);
+        return NULL;
     const char *error = wire_read_definition(bytes, size, read);
     for (int32_t i = 0; !error && i < read->body_count; i++)
         definitions_add(definitions, &read->body[i]);
@@ -213,57 +214,38 @@ static struct defined_body *undefined(struct definitions *definitions,
     return body && body->view.size > 0 && body->file != definitions->file ? body : NULL;
 }
 
-enum { DEFINITION_BYTES = WIRE_DEFINITION_BYTES - QUERY_TEXT_MAX + 1 };
-
-/* As if each body took a message of its own. */
 size_t definitions_needed(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count)
 {
-    const size_t each = (size_t) log_event_bytes(BUS_CHANNEL_MAX, DEFINITION_BYTES + HANDLE_BYTES);
     size_t bytes = 0;
     for (int32_t i = 0; i < count; i++) {
         const struct defined_body *body = undefined(definitions, &placement[i]);
-        bytes += body ? each + body->view.size : 0;
+        if (body)
+            bytes += (size_t) log_event_bytes(
+                BUS_CHANNEL_MAX, WIRE_DEFINITION_BYTES + HANDLE_BYTES + body->view.size);
     }
     return bytes;
 }
 
-static bool flush(struct definitions *definitions, log_sink *sink, void *user)
-{
-    if (definitions->written.body_count == 0)
-        return true;
-    const size_t size = wire_write_definition(&definitions->written, definitions->message);
-    definitions->written.body_count = 0;
-    definitions->size = 0;
-    return sink(user, LOG_DEFINITION, definitions->message, size);
-}
-
-/* One body always fits: it comes from a message of at most QUERY_BYTES_MAX whose header is no
+/* A body fits into a message: it comes from one of at most QUERY_BYTES_MAX whose header is no
  * shorter. */
-static bool pack(struct definitions *definitions, struct defined_body *body, log_sink *sink,
-                 void *user)
-{
-    struct definition *written = &definitions->written;
-    const size_t size = HANDLE_BYTES + body->view.size;
-    if ((DEFINITION_BYTES + definitions->size + size > QUERY_BYTES_MAX ||
-         written->body_count == QUERY_BODIES_MAX) &&
-        !flush(definitions, sink, user))
-        return false;
-    body->file = definitions->file;
-    definitions->size += size;
-    written->body[written->body_count++] = body->view;
-    return true;
-}
-
 int32_t definitions_write(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count, log_sink *sink, void *user)
 {
+    struct definition *written = &definitions->definition;
     int32_t bodies = 0;
     for (int32_t i = 0; i < count; i++) {
         struct defined_body *body = undefined(definitions, &placement[i]);
-        bodies += body != NULL;
-        if (body && !pack(definitions, body, sink, user))
+        if (!body)
+            continue;
+        memset(written, 0, offsetof(struct definition, body));
+        written->body_count = 1;
+        written->body[0] = body->view;
+        body->file = definitions->file;
+        bodies++;
+        if (!sink(user, LOG_DEFINITION, definitions->message,
+                  wire_write_definition(written, definitions->message)))
             return -1;
     }
-    return flush(definitions, sink, user) ? bodies : -1;
+    return bodies;
 }

@@ -30,8 +30,8 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
 void definitions_add_query(struct definitions *definitions, const struct logged_query *query);
 
 /* Adds the bodies that have frames in a message: a pair query, a scene query, or a definition;
- * others have none. Sets its names too (body_names_take_message()), unless names is NULL. Returns
- * NULL; or a static text: why the message cannot be decoded. Then nothing of it was added. */
+ * others have none. Sets its names too, and those of a names_t, unless names is NULL. Returns NULL;
+ * or a static text: why the message cannot be decoded. Then nothing of it was added. */
 const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
                                     enum log_kind kind, const void *bytes, uint32_t size);
 
@@ -67,8 +67,8 @@ void definitions_begin_file(struct definitions *definitions);
 size_t definitions_needed(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count);
 
-/* Writes definitions (definition_t) of the known bodies that the placements name by handle and the
- * file does not define. Returns the number of bodies; -1 as soon as sink returns false. */
+/* Writes a definition_t of each known body that the placements name by handle and the file does not
+ * define. Returns the number of bodies; -1 as soon as sink returns false. */
 int32_t definitions_write(struct definitions *definitions, const struct query_placement *placement,
                           int32_t count, log_sink *sink, void *user);
 

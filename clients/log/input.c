@@ -55,7 +55,7 @@ void input_begin(struct input *input, int log)
 {
     char why[LOG_WHY_MAX];
     if (choose(input, log, why))
-        log_rewind(input->reader);
+        log_seek(input->reader, 0);
 }
 
 enum log_outcome input_next(struct input *input, struct log_event *event, struct log_damage *damage)

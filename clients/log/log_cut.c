@@ -120,7 +120,7 @@ static void copy(struct cutter *cut, const struct log_event *event)
         return;
     }
     unsigned char *data = allocate_unset(event->size);
-    if (log_read_data(cut->input.reader, event, 0, data, event->size))
+    if (log_read_data(cut->input.reader, event, data))
         append(cut, event, data, event->size);
     else
         fail_input(cut, errno);
@@ -133,7 +133,6 @@ static bool append_own(void *user, enum log_kind kind, const void *bytes, size_t
     const struct log_event event = {.utime = cut->utime,
                                     .channel = cut->channels.name[kind],
                                     .channel_length = cut->channels.length[kind]};
-    cut->counts->definitions += kind == LOG_DEFINITION;
     append(cut, &event, bytes, size);
     return !cut->failed;
 }

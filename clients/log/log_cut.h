@@ -31,9 +31,9 @@ struct log_cut_counts {
     int64_t events, bytes; /* of the logs */
     int64_t kept_events, kept_bytes;
     int64_t kept[LOG_KINDS]; /* [kind] */
-    /* Definitions added, which do not count as kept; the bodies in them; handles in kept queries
-     * that the logs do not define. */
-    int64_t definitions, defined, unknown;
+    /* Bodies whose definitions were added, which do not count as kept; handles in kept queries that
+     * the logs do not define. */
+    int64_t defined, unknown;
     int64_t names; /* added to the beginning */
     int64_t damages, damaged_bytes;
 };

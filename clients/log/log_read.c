@@ -353,22 +353,15 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
 void log_seek(struct log_reader *reader, int64_t offset)
 {
     reader->at = offset;
-    reader->sought = true;
-}
-
-void log_rewind(struct log_reader *reader)
-{
-    reader->at = 0;
-    reader->sought = false;
+    reader->sought = offset > 0;
 }
 
 /* ---- All data of an event -------------------------------------------------------------------- */
 
-bool log_read_data(struct log_reader *reader, const struct log_event *event, size_t from,
-                   unsigned char *out, size_t count)
+bool log_read_data(struct log_reader *reader, const struct log_event *event, unsigned char *out)
 {
     const int64_t data = event->offset + event->length - (int64_t) event->size;
-    const bool good = read_at(reader, data + (int64_t) from, out, count);
+    const bool good = read_at(reader, data, out, event->size);
     if (!good)
         failed(reader);
     return good;

@@ -77,15 +77,12 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
                           struct log_damage *damage);
 
 /* Continues at an offset, from 0 to the size: that of an event that was read; or any other, and
- * then with the first accepted event from there on, without reporting the bytes before it. */
+ * then with the first accepted event from there on, without reporting the bytes before it. At 0,
+ * damage is reported again. */
 void log_seek(struct log_reader *reader, int64_t offset);
 
-/* Returns to the beginning: damage at the beginning of the file is reported again. */
-void log_rewind(struct log_reader *reader);
-
-/* Reads `count` bytes of the data of an event, from byte `from` on, including those not kept.
- * Returns false on error: errno. After an error, all later calls and log_next() fail too. */
-bool log_read_data(struct log_reader *reader, const struct log_event *event, size_t from,
-                   unsigned char *out, size_t count);
+/* Reads all data of an event, including those not kept. Returns false on error: errno. After an
+ * error, all later calls and log_next() fail too. */
+bool log_read_data(struct log_reader *reader, const struct log_event *event, unsigned char *out);
 
 #endif

@@ -11,10 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Events are collected in a buffer. */
+/* Events are collected in a buffer of this capacity, or more for a larger event. */
 enum { BUFFER_BYTES = 256 << 10 };
-
-_Static_assert(BUFFER_BYTES >= LOG_HEADER_BYTES + LOG_CHANNEL_MAX, "the buffer holds a header");
 
 struct log_writer {
     int fd;
@@ -22,18 +20,18 @@ struct log_writer {
     int64_t number; /* of the next event */
     int64_t whole;  /* bytes written to the file: complete events only */
     size_t used;    /* bytes used of the buffer: complete events only */
-    unsigned char buffer[BUFFER_BYTES];
+    size_t capacity;
+    unsigned char *buffer; /* owned */
 };
 
 struct log_writer *log_begin(int fd)
 {
-    struct log_writer *writer = fd >= 0 ? allocate_unset(sizeof *writer) : NULL;
-    if (!writer)
+    if (fd < 0)
         return NULL;
+    struct log_writer *writer = allocate(1, sizeof *writer);
     writer->fd = fd;
-    writer->error = 0;
-    writer->number = writer->whole = 0;
-    writer->used = 0;
+    writer->capacity = BUFFER_BYTES;
+    writer->buffer = allocate_unset(BUFFER_BYTES);
     return writer;
 }
 
@@ -130,19 +128,6 @@ static void put_header(struct log_writer *writer, int64_t utime, const char *cha
     writer->used += LOG_HEADER_BYTES + channel_length;
 }
 
-/* Writes data that the buffer does not hold, after its header, which is all that the buffer has. */
-static bool write_large(struct log_writer *writer, const void *data, size_t size)
-{
-    const size_t header = write_all(writer->fd, writer->buffer, writer->used);
-    const size_t done = header == writer->used ? write_all(writer->fd, data, size) : 0;
-    const bool complete = header == writer->used && done == size;
-    writer->used = 0;
-    if (!complete)
-        return cut_back(writer, header + done, errno);
-    writer->whole += (int64_t) (header + done);
-    return true;
-}
-
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size)
 {
@@ -150,11 +135,10 @@ bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
     assert(channel_length >= 1 && channel_length < LOG_CHANNEL_MAX && size <= INT32_MAX);
     if (writer->error)
         return fail(writer, 0);
-    if (bytes > BUFFER_BYTES - writer->used && !log_flush(writer))
+    if (bytes > writer->capacity - writer->used && !log_flush(writer))
         return false;
+    writer->buffer = allocate_grow(writer->buffer, &writer->capacity, bytes, 1);
     put_header(writer, utime, channel, channel_length, size);
-    if (bytes > BUFFER_BYTES)
-        return write_large(writer, data, size);
     if (size > 0)
         memcpy(writer->buffer + writer->used, data, size);
     writer->used += size;
@@ -186,6 +170,7 @@ int log_finish_soon(struct log_writer *writer, int *disk)
         return 0;
     const int error = log_flush(writer) && log_check(writer) ? 0 : errno;
     *disk = writer->fd;
+    free(writer->buffer);
     free(writer);
     return error;
 }

@@ -40,14 +40,13 @@ struct match_item {
     bool transient; /* of a result: logged_status_is_transient() */
     bool second;    /* of a result: its query has another one */
     /* For the user: */
-    bool chosen;        /* a query that is copied (log_cut.h) */
-    bool unreadable;    /* only the key can be read */
-    bool sent_whole;    /* sent with frames, after UNKNOWN_BODY */
-    bool defined;       /* sent_whole: the frames of all bodies are known */
-    bool left_over;     /* a recording by another client lacks this query */
-    bool by_order;      /* of a golden result: of another client, matched by its order */
-    bool has_own;       /* of a golden result: its own query is in the golden log, */
-    int64_t own_offset; /* there */
+    bool chosen;                  /* a query that is copied (log_cut.h) */
+    bool unreadable;              /* only the key can be read */
+    bool sent_whole;              /* sent with frames, after UNKNOWN_BODY */
+    bool defined;                 /* sent_whole: the frames of all bodies are known */
+    bool left_over;               /* a recording by another client lacks this query */
+    bool by_order;                /* of a golden result: of another client, matched by its order */
+    const struct match_item *own; /* of a golden result: its query in the golden log; NULL: none */
 };
 
 struct match_place match_place_of(int log, const struct log_event *event);

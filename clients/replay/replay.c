@@ -53,9 +53,10 @@ static void count_definition(struct replay *replay, const struct log_event *even
 
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
+    const uint32_t size = (uint32_t) event->kept;
     struct match_item item;
-    const char *undecoded =
-        body_names_take_message(replay->golden_names, kind, event->data, (uint32_t) event->kept);
+    if (kind == LOG_NAMES)
+        body_names_read(replay->golden_names, event->data, size);
     if (kind >= LOG_STATUS)
         return;
     const char *error = match_read(&item, kind, replay->input.log, event, &replay->then);
@@ -63,31 +64,30 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
         fail_golden(replay, event->offset, error);
     if (error)
         return;
-    item.unreadable = undecoded;
+    if (!item.is_result) {
+        item.unreadable = logged_query_read(&replay->query, kind, event->data, size);
+        if (!item.unreadable)
+            body_names_take(replay->golden_names, &replay->query);
+    }
     replay_channel(replay, &item)->results += item.is_result;
-    match_add(&replay->golden_queries, &item);
+    match_add(&replay->golden, &item);
 }
 
-/* Moves the golden results to those that are compared, each with the place of its own query.
- * Returns false if there are none, which was reported. */
-static bool move_golden_results(struct replay *replay)
+/* Adds the golden results to those that are compared, each with its own query. Returns false if
+ * there are none, which was reported. */
+static bool add_golden_results(struct replay *replay)
 {
-    struct match *golden = &replay->golden_queries;
-    size_t queries = 0;
+    struct match *golden = &replay->golden;
+    bool any = false;
     match_all(golden);
     for (size_t i = 0; i < golden->count; i++) {
         struct match_item result = golden->item[i];
         if (!result.is_result)
             continue;
-        result.has_own = result.other && !result.other->unreadable;
-        result.own_offset = result.has_own ? result.other->place.offset : 0;
+        result.own = result.other && !result.other->unreadable ? result.other : NULL;
         match_add(&replay->match, &result);
+        any = true;
     }
-    for (size_t i = 0; i < golden->count; i++)
-        if (!golden->item[i].is_result)
-            golden->item[queries++] = golden->item[i];
-    const bool any = golden->count > queries;
-    golden->count = queries;
     if (!any)
         complain("%s holds no results: is it an event log, with the prefix of the others?",
                  replay->options->golden);
@@ -174,7 +174,7 @@ static void close_replay(struct replay *replay)
     local_answerer_close(replay->local);
     g_queue_clear(&replay->again);
     match_clear(&replay->match);
-    match_clear(&replay->golden_queries);
+    match_clear(&replay->golden);
     body_names_close(replay->golden_names);
     input_close(&replay->rereader);
     input_close(&replay->golden_rereader);
@@ -214,7 +214,7 @@ static void read_logs(struct replay *replay)
 static void run(struct replay *replay)
 {
     read_logs(replay);
-    if (replay->options->golden && !move_golden_results(replay))
+    if (replay->options->golden && !add_golden_results(replay))
         return;
     match_all(&replay->match);
     if (replay->options->golden)

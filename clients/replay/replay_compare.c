@@ -106,11 +106,9 @@ static bool read_compared(struct replay *replay, const struct match_item *query)
 /* Reads the own query of a golden result. */
 static bool read_golden_query(struct replay *replay, const struct match_item *result)
 {
-    const struct match_item own = {
-        .key = result->key, .place = {.log = result->place.log, .offset = result->own_offset}};
     uint32_t size;
-    return replay_read_query(replay, rereader_of(replay, result), &own, replay->golden_bytes, &size,
-                             &replay->golden_query);
+    return replay_read_query(replay, rereader_of(replay, result), result->own, replay->golden_bytes,
+                             &size, &replay->golden_query);
 }
 
 static void read_new(struct replay *replay, enum log_kind kind, const struct new_result *answered)
@@ -185,7 +183,7 @@ static void compare_read(struct replay *replay, const struct match_item *query,
     const struct match_item *result = query->other;
     struct exchange then = exchange_of(replay, result ? &replay->then : NULL),
                     now = exchange_of(replay, &replay->now);
-    const bool has_own = result && result->has_own;
+    const bool has_own = result && result->own;
     if (has_own) {
         then.query = &replay->golden_query;
         then.names = replay->golden_names;
@@ -220,13 +218,13 @@ void replay_compare(struct replay *replay, const struct match_item *query,
     uint32_t size = 0;
     replay->label[0] = replay->note[0] = 0;
     /* A query comes before its result: so the golden log is read forwards. */
-    if (result && ((result->has_own && !read_golden_query(replay, result)) ||
+    if (result && ((result->own && !read_golden_query(replay, result)) ||
                    !read_again(replay, rereader_of(replay, result), &result->place,
                                replay->result_bytes, &size)))
         return;
     const bool same = result && compare_bytes_same((enum log_kind) query->key.kind, then, size,
                                                    answered->bytes, answered->size);
-    if (replay->options->page || replay->options->labels || (result && (!same || result->has_own)))
+    if (replay->options->page || replay->options->labels || (result && (!same || result->own)))
         compare_read(replay, query, answered, size, same);
     else if (same) /* results of both types end with compute_ns */
         count(replay, query, REPLAY_SAME, (int64_t) big_endian_64(then + size - sizeof(int64_t)));
@@ -249,10 +247,10 @@ static void compare_second(struct replay *replay, const struct match_item *secon
                     now = exchange_of(replay, &replay->now);
     struct tally_channel *channel = replay_channel(replay, second);
     bool differs = false;
-    if (second->has_own)
+    if (second->own)
         then.query = now.query = &replay->golden_query;
-    if (second->has_own || !query->unreadable) {
-        if (!(second->has_own ? read_golden_query(replay, second) : read_compared(replay, query)) ||
+    if (second->own || !query->unreadable) {
+        if (!(second->own ? read_golden_query(replay, second) : read_compared(replay, query)) ||
             !read_result(replay, query->other, replay->query_bytes, &replay->now) ||
             !read_result(replay, second, replay->result_bytes, &replay->then))
             return;

@@ -179,9 +179,11 @@ static void pair_items(struct pairing *pairing, struct match *match, bool result
 static void pair_queries(struct pairing *pairing)
 {
     struct replay *replay = pairing->replay;
-    const bool by_type = replay->golden_queries.count == 0;
+    bool by_type = true;
+    for (size_t i = 0; i < replay->golden.count; i++)
+        by_type = by_type && replay->golden.item[i].is_result;
     pair_items(pairing, &replay->match, false, false, by_type);
-    pair_items(pairing, by_type ? &replay->match : &replay->golden_queries, by_type, true, by_type);
+    pair_items(pairing, by_type ? &replay->match : &replay->golden, by_type, true, by_type);
 }
 
 static void rename_results(struct pairing *pairing)
@@ -228,5 +230,5 @@ void replay_pair_clients(struct replay *replay)
     HASH_FREE(pairing.table);
     match_all(&replay->match);
     report_left_over(replay, &replay->match);
-    report_left_over(replay, &replay->golden_queries);
+    report_left_over(replay, &replay->golden);
 }

@@ -28,8 +28,8 @@ struct replay {
     struct definitions *definitions;
     bool started, failed;
 
-    struct match match;          /* queries, and the results to compare with */
-    struct match golden_queries; /* of a golden log; while it is read, its results too */
+    struct match match;  /* queries, and the results to compare with */
+    struct match golden; /* the queries and results of a golden log */
     struct body_names *golden_names;
 
     struct local_answerer *local;

@@ -746,7 +746,7 @@ static void a_file_may_change_while_it_is_read(void **state)
     reads.change_at = 0;
 }
 
-static void data_of_an_event_are_read_in_pieces(void **state)
+static void all_data_of_an_event_are_read(void **state)
 {
     static unsigned char image[3 * LOG_DATA_MAX + 5], data[sizeof image];
     struct log_event event;
@@ -757,12 +757,11 @@ static void data_of_an_event_are_read_in_pieces(void **state)
     log_bytes_event(&whole, 1, "CAMERA", image, sizeof image);
     struct log_reader *reader = open_bytes(whole.bytes, whole.size);
     assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
-    assert_true(log_read_data(reader, &event, 0, data, 7));
-    assert_true(log_read_data(reader, &event, 7, data + 7, sizeof data - 7));
+    assert_true(log_read_data(reader, &event, data));
     assert_memory_equal(data, image, sizeof image);
     assert_int_equal(ftruncate(log_bytes_descriptor(), (off_t) whole.size - 1), 0);
     errno = 0;
-    assert_false(log_read_data(reader, &event, 0, data, sizeof data));
+    assert_false(log_read_data(reader, &event, data));
     assert_int_equal(errno, ENODATA);
     expect_failed(reader, ENODATA);
     log_close(reader);
@@ -837,7 +836,7 @@ int main(void)
         cmocka_unit_test(what_is_written_later_is_not_read),
         cmocka_unit_test(a_file_that_becomes_shorter_ends_reading),
         cmocka_unit_test(a_file_may_change_while_it_is_read),
-        cmocka_unit_test(data_of_an_event_are_read_in_pieces),
+        cmocka_unit_test(all_data_of_an_event_are_read),
         cmocka_unit_test(a_hole_that_becomes_shorter_ends_reading),
         cmocka_unit_test(a_file_that_cannot_be_read_is_an_error),
         cmocka_unit_test(what_is_no_file_is_refused),

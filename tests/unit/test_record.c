@@ -225,7 +225,7 @@ static void all_are_requested_in_pages(void **state)
     begin_file(world);
     receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
     receive_query(world, place_by_handle(&body[0]), place_by_handle(&body[1]));
-    assert_int_equal(world->definitions, 1);
+    assert_int_equal(world->definitions, 2);
     assert_int_equal(world->defined, 2);
     assert_file_defines(world, &body[0]);
     assert_file_defines(world, &body[1]);
