@@ -235,7 +235,7 @@ static bool has_counts(const struct replay_run *run, const struct tally *all)
     const bool any = run->good ? all->events > 0 : tally_both(all).queries > 0;
     return run->begun && any &&
            (!run->options->live || all->bus.answered > 0 ||
-            (all->bus.used && all->bus.end == ANSWER_BUS_NO_END));
+            (all->bus.used && all->bus.end == TALLY_NO_END));
 }
 
 static void report_all(struct replay_run *run, const struct tally *all, int code)
@@ -284,14 +284,14 @@ static void report_end(const struct tally_bus *bus, const struct fmb_client_opti
                        char *const *log)
 {
     char answered[NUMBER_TEXT_MAX];
-    switch ((enum answer_bus_end) bus->end) {
-    case ANSWER_BUS_NO_END: break;
-    case ANSWER_BUS_SIGNAL:
+    switch ((enum tally_end) bus->end) {
+    case TALLY_NO_END: break;
+    case TALLY_SIGNAL:
         complain("ended by a signal; counts are of %s queries, answered so far",
                  number_grouped(bus->answered, answered));
         break;
-    case ANSWER_BUS_NO_SERVICE: report_no_service(bus, options, log); break;
-    case ANSWER_BUS_FAILED: complain("the bus has failed"); break;
+    case TALLY_NO_SERVICE: report_no_service(bus, options, log); break;
+    case TALLY_BUS_FAILED: complain("the bus has failed"); break;
     }
 }
 

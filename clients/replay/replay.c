@@ -154,9 +154,7 @@ static bool open_replay(struct replay *replay)
     replay->definitions = definitions_open();
     replay->golden_names = options->golden ? body_names_open() : NULL;
     replay->local = local_answerer_open(options->frames, replay->definitions);
-    if (options->bus)
-        replay->bus = answer_bus_open(options->bus, replay_on_answered, replay);
-    if ((options->bus && !replay->bus) || !open_output(replay))
+    if ((options->bus && !replay_open_bus(replay)) || !open_output(replay))
         return false;
     replay->channels = log_channels(options->prefix);
     return true;
@@ -164,13 +162,7 @@ static bool open_replay(struct replay *replay)
 
 static void close_replay(struct replay *replay)
 {
-    if (replay->bus) {
-        struct tally_bus *counts = &replay->tally[0].bus;
-        *counts = answer_bus_counts(replay->bus);
-        counts->not_sent = replay->not_sent;
-        counts->answered += replay->not_sent;
-    }
-    answer_bus_close(replay->bus);
+    replay_close_bus(replay);
     local_answerer_close(replay->local);
     g_queue_clear(&replay->again);
     match_clear(&replay->match);
@@ -231,6 +223,7 @@ bool replay_run(const struct replay_options *options, const struct replay_sink *
     replay->options = options;
     replay->sink = sink;
     replay->tally = tally;
+    replay->signals = -1;
     if (open_replay(replay))
         run(replay);
     else

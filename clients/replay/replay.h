@@ -3,11 +3,11 @@
 #ifndef REPLAY_H
 #define REPLAY_H
 
-#include "answer_bus.h"
 #include "body_names.h"
 #include "input.h"
 #include "output.h"
 #include "page_exchange.h"
+#include "tally.h"
 
 /* Callbacks for the progress and the findings of a replay. None may be NULL. */
 struct replay_sink {

@@ -1,9 +1,31 @@
-/* Answers queries, in this process or on the bus. */
+/* Answers queries, in this process or by a service on the bus.
+ *
+ * On the bus many queries are under way at a time. The request engine of the client library
+ * (fmb_client_raw.h) assigns its own ids, repeats lost queries, and pauses while the service is
+ * busy. Steps of a query, in the order of the log:
+ *   1. wait_for_capacity() handles results until the engine has capacity for the query and its
+ *      expected result (bytes_of()).
+ *   2. send() takes a slot and passes the query to the engine.
+ *   3. step() runs the engine, which calls on_result() for each result, or with a negative status
+ *      after the last timeout.
+ *   4. on_result() frees the slot, and counts and compares the result, with the ids of the log. It
+ *      must not send: a query whose bodies the service lacks is put into replay->again.
+ *   5. send_again() sends it with the frames of its bodies.
+ *
+ * stop() records the first reason to end: a signal, no service, or a failed bus. From then on no
+ * query is sent, and results are ignored. Tested by tests/system/replay_bus.bats. */
 #include "replay_parts.h"
 
+#include "big_endian.h"
+#include "clock.h"
+#include "complain.h"
+#include "process.h"
 #include "wire.h"
 
+#include <poll.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- Answers ---- */
 
@@ -41,20 +63,192 @@ static void take_answer(struct replay *replay, const struct match_item *query,
     replay_compare(replay, query, answered);
 }
 
-/* ---- By a service ---- */
+/* ---- The bus ---- */
 
-/* The sink of answer_bus.h. It must not send queries. */
-bool replay_on_answered(void *user, struct match_item *query, const struct new_result *answered)
+/* Signals are checked once in so many calls of replay_has_ended(). */
+enum { POLL_EVERY = 256 };
+
+/* Offsets in results of the ids of the query. */
+enum { CLIENT_AT = 16, SEQUENCE_AT = 24 };
+
+static struct tally_bus *counts_of(struct replay *replay)
 {
-    struct replay *replay = user;
-    const bool is_last = answered->status != FMB_UNKNOWN_BODY || query->sent_whole;
-    struct new_result taken = *answered;
-    taken.not_held = answered->status == FMB_UNKNOWN_BODY && query->defined;
-    if (is_last)
-        take_answer(replay, query, &taken);
-    else
+    return &replay->tally->bus;
+}
+
+bool replay_open_bus(struct replay *replay)
+{
+    char why[FMB_CLIENT_WHY_MAX];
+    replay->client = fmb_client_open(replay->options->bus, why, sizeof why);
+    if (!replay->client) {
+        complain("%s", why);
+        return false;
+    }
+    counts_of(replay)->used = 1;
+    replay->signals = signals_open();
+    if (replay->signals < 0)
+        perror("fmb: signals");
+    return replay->signals >= 0;
+}
+
+void replay_close_bus(struct replay *replay)
+{
+    struct fmb_client_counts counts;
+    if (!replay->client)
+        return;
+    fmb_client_get_counts(replay->client, &counts);
+    counts_of(replay)->resent = (int64_t) counts.repeated;
+    counts_of(replay)->malformed = (int64_t) counts.malformed;
+    fmb_client_close(replay->client);
+    if (replay->signals >= 0)
+        close(replay->signals);
+}
+
+/* Ends the replay; only the first call counts. */
+static void stop(struct replay *replay, enum tally_end end)
+{
+    if (counts_of(replay)->end == TALLY_NO_END)
+        counts_of(replay)->end = end;
+}
+
+bool replay_has_ended(struct replay *replay)
+{
+    struct pollfd source = {.fd = replay->signals, .events = POLLIN};
+    if (replay->client && ++replay->polls % POLL_EVERY == 0 && poll(&source, 1, 0) > 0)
+        stop(replay, TALLY_SIGNAL);
+    return counts_of(replay)->end != TALLY_NO_END;
+}
+
+/* ---- Results ---- */
+
+/* The query got no answer, with this status of the library. */
+static void stop_at(struct replay *replay, int status, const struct match_place *place)
+{
+    struct tally_bus *counts = counts_of(replay);
+    if (counts->end != TALLY_NO_END)
+        return;
+    counts->end = status == FMB_CLIENT_NO_BUS ? TALLY_BUS_FAILED : TALLY_NO_SERVICE;
+    counts->log = place->log;
+    counts->number = place->number;
+    counts->offset = place->offset;
+}
+
+/* Cannot fail: the library has decoded both. */
+static void decode(struct replay *replay, enum log_kind kind,
+                   const struct fmb_client_raw_result *result, struct new_result *out)
+{
+    logged_result_read(&replay->now, kind, result->bytes, (uint32_t) result->size);
+    out->compute_ns = replay->now.head.compute_ns;
+    out->pairs = out->status == FMB_OK;
+    if (kind == LOG_PAIR_QUERY)
+        return;
+    logged_query_read(&replay->compared, kind, result->query, (uint32_t) result->query_size);
+    struct exchange exchange = {.query = &replay->compared, .result = &replay->now};
+    exchange_begin(&exchange);
+    out->pairs = exchange_decided(&exchange);
+}
+
+static void on_result(void *user, const struct fmb_client_raw_result *result)
+{
+    struct replay_slot *slot = user;
+    struct replay *replay = slot->replay;
+    struct tally_bus *counts = counts_of(replay);
+    struct match_item *query = slot->query;
+    unsigned char *bytes = replay->answered_bytes;
+    struct new_result answered = {.bytes = bytes, .size = result->size, .status = result->status};
+    replay->under_way--;
+    slot->replay = NULL;
+    if (result->status < 0)
+        stop_at(replay, result->status, &query->place);
+    if (counts->end != TALLY_NO_END || slot->supplies)
+        return;
+    decode(replay, (enum log_kind) query->key.kind, result, &answered);
+    const int64_t server_id = replay->now.head.server_id;
+    counts->services += counts->services == 0 || server_id != replay->server_id;
+    replay->server_id = server_id;
+    counts->ns = clock_ns() - replay->begun_at;
+    if (answered.status == FMB_UNKNOWN_BODY && !query->sent_whole) {
         g_queue_push_tail(&replay->again, query);
-    return is_last;
+        return;
+    }
+    memcpy(bytes, result->bytes, result->size);
+    big_endian_put_64(bytes + CLIENT_AT, (uint64_t) query->key.client_id);
+    big_endian_put_64(bytes + SEQUENCE_AT, (uint64_t) query->key.sequence_number);
+    answered.not_held = answered.status == FMB_UNKNOWN_BODY && query->defined;
+    counts->answered++;
+    take_answer(replay, query, &answered);
+}
+
+/* Runs the engine until something happens. */
+static void step(struct replay *replay)
+{
+    if (fmb_client_raw_step(replay->client, replay->signals, 1) < 0)
+        stop(replay, TALLY_BUS_FAILED);
+    replay->polls = POLL_EVERY - 1;
+}
+
+/* Waits until all queries under way are answered. */
+static void finish(struct replay *replay)
+{
+    while (!replay_has_ended(replay) && replay->under_way > 0)
+        step(replay);
+}
+
+/* ---- Queries to the service ---- */
+
+/* Returns whether the replay goes on. */
+static bool wait_for_capacity(struct replay *replay, size_t bytes)
+{
+    while (!replay_has_ended(replay) && !fmb_client_raw_ready(replay->client, bytes))
+        step(replay);
+    return !replay_has_ended(replay);
+}
+
+/* The larger of a query and its expected result, bytes. A result with many contacts may be larger.
+ */
+static size_t bytes_of(const struct logged_query *query, uint32_t size)
+{
+    const struct scene_query *scene = &query->scene;
+    size_t bytes = 1024;
+    if (query->kind == LOG_PAIR_QUERY && query->pair.want & FMB_WANT_CERTIFICATE)
+        bytes = 4096;
+    if (query->kind == LOG_SCENE_QUERY)
+        bytes += (size_t) scene->index_count / 2 + 100 * (size_t) scene->placement_count;
+    bytes = bytes < QUERY_BYTES_MAX ? bytes : QUERY_BYTES_MAX;
+    return bytes > size ? bytes : size;
+}
+
+/* supplies: the message only carries bodies of the query. largest: as bytes_of(). */
+static void send(struct replay *replay, struct match_item *query, enum log_kind kind, bool supplies,
+                 const unsigned char *bytes, uint32_t size, size_t largest)
+{
+    struct replay_slot *slot = replay->slot;
+    while (slot->replay)
+        slot++; /* there are as many slots as the engine has requests */
+    *slot = (struct replay_slot){replay, query, supplies};
+    const int status = fmb_client_raw_send(
+        replay->client, kind == LOG_PAIR_QUERY ? FMB_CLIENT_PAIR : FMB_CLIENT_SCENE, bytes, size,
+        largest, on_result, slot);
+    if (status == FMB_OK) {
+        replay->under_way++;
+        return;
+    }
+    slot->replay = NULL;
+    stop(replay, TALLY_BUS_FAILED);
+}
+
+static void send_query(struct replay *replay, struct match_item *query, const unsigned char *bytes,
+                       uint32_t size)
+{
+    const enum log_kind kind = (enum log_kind) query->key.kind;
+    logged_query_read(&replay->compared, kind, bytes, size);
+    const size_t largest = bytes_of(&replay->compared, size);
+    if (replay->begun_at == 0)
+        replay->begun_at = clock_ns();
+    if (!wait_for_capacity(replay, largest))
+        return;
+    counts_of(replay)->whole += query->sent_whole;
+    send(replay, query, kind, false, bytes, size, largest);
 }
 
 /* Sends the bodies of a query ahead of it, if the query has no space for their frames. Each scene
@@ -80,8 +274,12 @@ static void supply_service(struct replay *replay, struct match_item *query)
         }
         if (supply->placement_count == 0)
             return; /* no body is left, or a single one is too long */
-        answer_bus_supply(replay->bus, query, replay->whole,
-                          (uint32_t) wire_write_scene_query(supply, replay->whole));
+        const uint32_t bytes = (uint32_t) wire_write_scene_query(supply, replay->whole);
+        if (!wait_for_capacity(replay, bytes))
+            return;
+        counts_of(replay)->supplied++;
+        send(replay, query, LOG_SCENE_QUERY, true, replay->whole, bytes, bytes);
+        finish(replay);
     }
 }
 
@@ -98,10 +296,10 @@ static void send_again(struct replay *replay)
         const size_t size = logged_query_write(&replay->query, replay->whole);
         query->sent_whole = true;
         if (size > 0) {
-            answer_bus_query(replay->bus, query, replay->whole, (uint32_t) size);
+            send_query(replay, query, replay->whole, (uint32_t) size);
         } else {
             supply_service(replay, query);
-            answer_bus_query(replay->bus, query, replay->query_bytes, query_size);
+            send_query(replay, query, replay->query_bytes, query_size);
         }
     }
 }
@@ -123,20 +321,16 @@ static void answer_query(struct replay *replay, struct match_item *query)
     uint32_t size;
     if (!input_read_again(&replay->input, query->place.log, query->place.offset, bytes, &size)) {
         replay_fail_log(replay, query->place.log);
-    } else if (replay->bus && can_be_sent(query, size)) {
-        answer_bus_query(replay->bus, query, bytes, size);
+    } else if (replay->client && can_be_sent(query, size)) {
+        send_query(replay, query, bytes, size);
     } else if (local_answer(replay->local, (enum log_kind) query->key.kind, bytes, size,
                             &answered)) {
         replay_fail_changed(replay, query->place.log);
     } else {
-        replay->not_sent++;
+        counts_of(replay)->not_sent++;
+        counts_of(replay)->answered++;
         take_answer(replay, query, &answered);
     }
-}
-
-bool replay_has_ended(const struct replay *replay)
-{
-    return replay->bus && !answer_bus_is_running(replay->bus);
 }
 
 /* Reading the logs counts as the first half of the progress. */
@@ -156,7 +350,6 @@ void replay_answer_queries(struct replay *replay)
     }
     do {
         send_again(replay);
-        if (replay->bus)
-            answer_bus_finish(replay->bus);
+        finish(replay);
     } while (!g_queue_is_empty(&replay->again) && !replay_has_ended(replay));
 }

@@ -99,10 +99,10 @@ static void write_times(struct json_writer *json, const char *key, const struct 
 
 static void write_bus(struct json_writer *json, const struct tally_bus *bus)
 {
-    static const char *const end[] = {[ANSWER_BUS_NO_END] = NULL,
-                                      [ANSWER_BUS_SIGNAL] = "signal",
-                                      [ANSWER_BUS_NO_SERVICE] = "no service answers",
-                                      [ANSWER_BUS_FAILED] = "the bus has failed"};
+    static const char *const end[] = {[TALLY_NO_END] = NULL,
+                                      [TALLY_SIGNAL] = "signal",
+                                      [TALLY_NO_SERVICE] = "no service answers",
+                                      [TALLY_BUS_FAILED] = "the bus has failed"};
     json_begin(json, "bus", '{');
     json_integer(json, "answered", bus->answered);
     json_integer(json, "ns", bus->ns);

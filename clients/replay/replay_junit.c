@@ -78,7 +78,7 @@ static void write_log(struct junit *junit, struct listing *list, struct tally *t
     const int64_t left_out = both.outcome[REPLAY_UNDEFINED] + both.outcome[REPLAY_NOT_HELD];
     const bool is_whole = tally->damages == 0 && tally_unreadable(tally) == 0 &&
                           both.contradictions == 0 && both.left_over == 0 && left_out == 0;
-    const bool ended_early = bus->used && bus->end != ANSWER_BUS_NO_END;
+    const bool ended_early = bus->used && bus->end != TALLY_NO_END;
     int failures = tally->channel[TALLY_PAIRS].outcome[REPLAY_DIFFERENT] > 0;
     tally_label(tally, ""); /* the case of scenes without a label comes first, and always */
     GList *labels = g_list_sort(g_hash_table_get_keys(tally->labels), (GCompareFunc) g_strcmp0);

@@ -8,11 +8,20 @@
 #define REPLAY_PARTS_H
 
 #include "definitions.h"
+#include "fmb_client_raw.h"
+#include "local_answerer.h"
 #include "log_write.h"
 #include "match.h"
 #include "replay.h"
 
 #include <glib.h>
+
+/* A query under way on the bus. */
+struct replay_slot {
+    struct replay *replay; /* NULL: the slot is free */
+    struct match_item *query;
+    bool supplies; /* the message only carries bodies of the query */
+};
 
 struct replay {
     const struct replay_options *options;
@@ -33,9 +42,14 @@ struct replay {
     struct body_names *golden_names;
 
     struct local_answerer *local;
-    struct answer_bus *bus; /* NULL: this process answers */
-    int64_t not_sent;       /* queries that this process answered */
-    GQueue again;           /* items of queries to be sent with the frames of their bodies */
+    /* The bus (replay_answer.c). */
+    struct fmb_client *client; /* NULL: this process answers */
+    int signals;               /* readable after SIGINT and SIGTERM; -1: not opened */
+    struct replay_slot slot[FMB_CLIENT_RAW_WINDOW];
+    int under_way; /* queries */
+    unsigned polls;
+    int64_t begun_at, server_id;
+    GQueue again; /* items of queries to be sent with the frames of their bodies */
 
     struct logged_query query;
     struct scene_query supply; /* without pairs */
@@ -45,7 +59,7 @@ struct replay {
     unsigned char whole[QUERY_BYTES_MAX]; /* a query to be sent with the frames of its bodies */
     /* The comparison in progress: its query, as in the log and decoded, and both results. */
     const struct match_item *item;
-    struct logged_query compared;
+    struct logged_query compared; /* before the comparison, for the steps of a query on the bus */
     struct logged_query golden_query; /* of the golden result, if it has its own */
     struct logged_result then, now;
     struct tally_channel others;    /* queries whose labels are not counted */
@@ -53,18 +67,21 @@ struct replay {
     char note[COMPARE_DETAIL_MAX];  /* how the scenes of both differ; "": they do not */
     /* Contain the geometries of compared and golden_query. */
     unsigned char compared_bytes[LOG_DATA_MAX], golden_bytes[LOG_DATA_MAX];
+    unsigned char answered_bytes[QUERY_BYTES_MAX]; /* the result of a service */
 };
 
 /* ---- replay_answer.c ---- */
 
-/* The sink of the service's answers. */
-bool replay_on_answered(void *user, struct match_item *query, const struct new_result *answered);
+/* Opens the bus. Returns false after an error, which was reported. From then on SIGINT and SIGTERM
+ * are blocked and end the replay. */
+bool replay_open_bus(struct replay *replay);
+void replay_close_bus(struct replay *replay); /* if it was opened */
 
 /* Answers all queries, in process or on the bus, unless the replay ends early. */
 void replay_answer_queries(struct replay *replay);
 
 /* Whether the replay has ended: no service answers, or a signal arrived. */
-bool replay_has_ended(const struct replay *replay);
+bool replay_has_ended(struct replay *replay);
 
 /* ---- replay_pair.c ---- */
 

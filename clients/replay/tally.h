@@ -34,10 +34,18 @@ extern const struct tally_count tally_count[TALLY_COUNTS];
 /* The counts as an array [TALLY_COUNTS]. */
 const int64_t *tally_counts(const struct tally_channel *channel);
 
-/* Counts of a replay through a service on the bus (answer_bus.h). */
+/* Why a replay through a service ended early. */
+enum tally_end {
+    TALLY_NO_END, /* it did not */
+    TALLY_SIGNAL,
+    TALLY_NO_SERVICE, /* no service answers */
+    TALLY_BUS_FAILED
+};
+
+/* Counts of a replay through a service on the bus. */
 struct tally_bus {
     int64_t used;      /* 1; 0: this process answered */
-    int64_t end;       /* enum answer_bus_end */
+    int64_t end;       /* enum tally_end */
     int64_t answered;  /* queries of the log answered */
     int64_t ns;        /* from the first query to the last answer, nanoseconds */
     int64_t resent;    /* queries sent again for lack of an answer */
