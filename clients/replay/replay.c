@@ -200,7 +200,7 @@ static void read_logs(struct replay *replay)
             return;
     }
     if (outcome == LOG_FAILED)
-        replay_fail_log(replay, replay->input.log);
+        replay_fail(replay, replay->paths[replay->input.log], errno);
 }
 
 static void run(struct replay *replay)

@@ -22,6 +22,7 @@
 #include "process.h"
 #include "wire.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
@@ -51,7 +52,7 @@ static void write_golden(struct replay *replay, const struct match_item *query,
     memcpy(bytes + answered->size - sizeof no_time, no_time, sizeof no_time);
     if (!log_append(replay->new_golden, query->place.utime, replay->channels.name[kind],
                     replay->channels.length[kind], bytes, answered->size))
-        replay_fail(replay, replay->options->write_golden.path);
+        replay_fail(replay, replay->options->write_golden.path, errno);
 }
 
 static void take_answer(struct replay *replay, const struct match_item *query,
@@ -320,12 +321,12 @@ static void answer_query(struct replay *replay, struct match_item *query)
     struct new_result answered;
     uint32_t size;
     if (!input_read_again(&replay->input, query->place.log, query->place.offset, bytes, &size)) {
-        replay_fail_log(replay, query->place.log);
+        replay_fail(replay, replay->paths[query->place.log], errno);
     } else if (replay->client && can_be_sent(query, size)) {
         send_query(replay, query, bytes, size);
     } else if (local_answer(replay->local, (enum log_kind) query->key.kind, bytes, size,
                             &answered)) {
-        replay_fail_changed(replay, query->place.log);
+        replay_fail(replay, replay->paths[query->place.log], EIO);
     } else {
         counts_of(replay)->not_sent++;
         counts_of(replay)->answered++;

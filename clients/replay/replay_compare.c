@@ -10,22 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-void replay_fail(struct replay *replay, const char *what)
+void replay_fail(struct replay *replay, const char *what, int error)
 {
     if (!replay->failed)
-        complain("%s: %s", what, strerror(errno));
+        complain("%s: %s", what, strerror(error));
     replay->failed = true;
-}
-
-void replay_fail_log(struct replay *replay, int log)
-{
-    replay_fail(replay, replay->paths[log]);
-}
-
-void replay_fail_changed(struct replay *replay, int log)
-{
-    errno = EIO;
-    replay_fail_log(replay, log);
 }
 
 /* Results of the golden log are counted with the first log. */
@@ -50,12 +39,13 @@ void replay_report(struct replay *replay, const struct match_item *item, const c
 
 /* ---- Reading ---- */
 
-static bool read_again(struct replay *replay, struct input *input, const struct match_place *place,
+static bool read_again(struct replay *replay, struct input *input, const struct match_item *item,
                        unsigned char bytes[LOG_DATA_MAX], uint32_t *size)
 {
+    const struct match_place *place = &item->place;
     const bool good = input_read_again(input, place->log, place->offset, bytes, size);
     if (!good)
-        replay_fail_log(replay, place->log);
+        replay_fail(replay, replay->paths[place->log], errno);
     return good;
 }
 
@@ -63,14 +53,14 @@ static bool read_again(struct replay *replay, struct input *input, const struct 
 static bool is_unchanged(struct replay *replay, const struct match_item *item, const char *error)
 {
     if (error)
-        replay_fail_changed(replay, item->place.log);
+        replay_fail(replay, replay->paths[item->place.log], EIO);
     return !error;
 }
 
 bool replay_read_query(struct replay *replay, struct input *input, const struct match_item *query,
                        unsigned char bytes[LOG_DATA_MAX], uint32_t *size, struct logged_query *out)
 {
-    return read_again(replay, input, &query->place, bytes, size) &&
+    return read_again(replay, input, query, bytes, size) &&
            is_unchanged(replay, query,
                         logged_query_read(out, (enum log_kind) query->key.kind, bytes, *size));
 }
@@ -87,7 +77,7 @@ static bool read_result(struct replay *replay, const struct match_item *result,
                         unsigned char bytes[LOG_DATA_MAX], struct logged_result *out)
 {
     uint32_t size;
-    return read_again(replay, rereader_of(replay, result), &result->place, bytes, &size) &&
+    return read_again(replay, rereader_of(replay, result), result, bytes, &size) &&
            is_unchanged(replay, result,
                         logged_result_read(out, (enum log_kind) result->key.kind, bytes, size));
 }
@@ -218,9 +208,9 @@ void replay_compare(struct replay *replay, const struct match_item *query,
     uint32_t size = 0;
     replay->label[0] = replay->note[0] = 0;
     /* A query comes before its result: so the golden log is read forwards. */
-    if (result && ((result->own && !read_golden_query(replay, result)) ||
-                   !read_again(replay, rereader_of(replay, result), &result->place,
-                               replay->result_bytes, &size)))
+    if (result &&
+        ((result->own && !read_golden_query(replay, result)) ||
+         !read_again(replay, rereader_of(replay, result), result, replay->result_bytes, &size)))
         return;
     const bool same = result && compare_bytes_same((enum log_kind) query->key.kind, then, size,
                                                    answered->bytes, answered->size);

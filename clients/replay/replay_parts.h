@@ -91,12 +91,9 @@ void replay_pair_clients(struct replay *replay);
 
 /* ---- replay_compare.c ---- */
 
-/* Reports errno and what cannot be read or written, once; the replay continues. */
-void replay_fail(struct replay *replay, const char *what);
-void replay_fail_log(struct replay *replay, int log);
-
-/* replay_fail_log() for a message that could be read before. */
-void replay_fail_changed(struct replay *replay, int log);
+/* Reports what cannot be read or written, once; the replay continues. error: a value of errno; EIO
+ * for a message that could be read before. */
+void replay_fail(struct replay *replay, const char *what, int error);
 
 /* The counts of the channel of a query or result. */
 struct tally_channel *replay_channel(struct replay *replay, const struct match_item *item);
