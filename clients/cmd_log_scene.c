@@ -147,15 +147,6 @@ static bool read_query(struct search *search)
                   (int) missing, query->placement[missing].placed.id);
 }
 
-/* Reports the detail of the result of a query that the service refuses. */
-static void report_refusal(const struct search *search, const struct new_result *refused)
-{
-    struct logged_result *result = allocate(1, sizeof *result);
-    logged_result_read(result, search->kind, refused->bytes, (uint32_t) refused->size);
-    complain("event %" PRId64 ": the service refuses it: %s", search->number, result->head.detail);
-    free(result);
-}
-
 /* Whether the service accepts the query. A pair that its method cannot decide is accepted. */
 static bool check_query(const struct search *search)
 {
@@ -169,8 +160,13 @@ static bool check_query(const struct search *search)
     local_answer(answerer, search->kind, search->bytes, search->size, &result);
     const bool accepted = result.status == FMB_OK ||
                           (search->kind == LOG_PAIR_QUERY && result.status == FMB_CANNOT_DECIDE);
-    if (!accepted)
-        report_refusal(search, &result);
+    if (!accepted) {
+        struct logged_result *refused = allocate(1, sizeof *refused);
+        logged_result_read(refused, search->kind, result.bytes, (uint32_t) result.size);
+        complain("event %" PRId64 ": the service refuses it: %s", search->number,
+                 refused->head.detail);
+        free(refused);
+    }
     local_answerer_close(answerer);
     return accepted;
 }

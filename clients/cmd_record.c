@@ -183,16 +183,6 @@ static bool bus_failed(void)
     return false;
 }
 
-/* Sends the request for bodies that is due. A bus that fails is reported by the next step. */
-static void request_bodies(struct recording *recording, int64_t now_ns)
-{
-    unsigned char query[QUERY_BYTES_MAX];
-    const size_t size = record_bodies_request(recording->bodies, now_ns, query);
-    if (size > 0)
-        fmb_client_raw_send(recording->client, FMB_CLIENT_DEFINITION, query, size, sizeof query,
-                            record_bodies_take_result, recording->bodies);
-}
-
 /* Waits for messages until a time or a signal, records them, and passes them to the system. Ends
  * the recording if another program has deleted or truncated the file: what follows could name
  * bodies that its beginning defined. */
@@ -208,18 +198,9 @@ static bool step(struct recording *recording, int signals, int64_t until_ns)
     return true;
 }
 
-static void show_progress(const struct recording *recording)
-{
-    char text[3][NUMBER_TEXT_MAX];
-    if (stderr_ready())
-        progress_show("%s messages, %s MB, %s lost", number_grouped(recording->messages, text[0]),
-                      number_grouped(log_parts_written(&recording->parts) / 1000000, text[1]),
-                      number_grouped((int64_t) fmb_client_raw_bus_counts(recording->client).dropped,
-                                     text[2]));
-}
-
 /* Records until the recording is complete, the log fails, or a signal arrives. Returns false if the
- * bus has failed, which was reported. */
+ * bus has failed, which was reported: a request that cannot be sent is followed by a step that
+ * fails. */
 static bool run(struct recording *recording, int signals)
 {
     const double duration = recording->options->duration;
@@ -227,18 +208,28 @@ static bool run(struct recording *recording, int signals)
         duration > 0 ? recording->begin_ns + (int64_t) (1e9 * duration) : INT64_MAX;
     int64_t now_ns = recording->begin_ns, line_at_ns = now_ns;
     struct pollfd signal = {.fd = signals, .events = POLLIN};
+    unsigned char request[QUERY_BYTES_MAX];
+    char text[3][NUMBER_TEXT_MAX];
     while (!recording->enough && !recording->error && now_ns < end_ns) {
-        request_bodies(recording, now_ns);
+        const size_t size = record_bodies_request(recording->bodies, now_ns, request);
+        if (size > 0)
+            fmb_client_raw_send(recording->client, FMB_CLIENT_DEFINITION, request, size,
+                                sizeof request, record_bodies_take_result, recording->bodies);
         const int64_t due_ns = record_bodies_due(recording->bodies);
         if (!step(recording, signals, clock_earlier(clock_earlier(due_ns, end_ns), line_at_ns)))
             return bus_failed();
         if (poll(&signal, 1, 0) > 0)
             return true;
         now_ns = clock_ns();
-        if (now_ns >= line_at_ns) {
-            show_progress(recording);
-            line_at_ns = now_ns + line_ns;
-        }
+        if (now_ns < line_at_ns)
+            continue;
+        line_at_ns = now_ns + line_ns;
+        if (stderr_ready())
+            progress_show(
+                "%s messages, %s MB, %s lost", number_grouped(recording->messages, text[0]),
+                number_grouped(log_parts_written(&recording->parts) / 1000000, text[1]),
+                number_grouped((int64_t) fmb_client_raw_bus_counts(recording->client).dropped,
+                               text[2]));
     }
     return true;
 }

@@ -21,16 +21,11 @@ const char *const difference_name[DIFFERENT_KINDS] = {
 
 /* ---- Numbers ---- */
 
-static bool same_bits(const double *a, const double *b, int count)
-{
-    return memcmp(a, b, (size_t) count * sizeof *a) == 0;
-}
-
 /* Whether each number has the same bits in both lists or differs by at most limit. */
 static bool within(const double *a, const double *b, int count, double limit)
 {
     for (int i = 0; i < count; i++)
-        if (!same_bits(&a[i], &b[i], 1) && !(fabs(a[i] - b[i]) <= limit))
+        if (memcmp(&a[i], &b[i], sizeof *a) != 0 && !(fabs(a[i] - b[i]) <= limit))
             return false;
     return true;
 }
@@ -45,22 +40,17 @@ static double largest(const double *number, int count, double most)
 
 /* ---- The largest coordinate of a query ---- */
 
-/* 0: the geometry is not known, or the engine refuses it. */
-static double body_reach(const struct body_view *view)
-{
-    struct owned_scene memory = {.dim = 0};
-    const struct fmb_body *body = view->frame_count > 0 ? body_of_view(view, &memory) : NULL;
-    const double reach = body && isfinite(body->reach) ? body->reach : 0;
-    scene_clear(&memory);
-    return reach;
-}
-
+/* The reach of a body is 0 if its geometry is not known, or the engine refuses it. */
 static double largest_coordinate(const struct logged_query *query, double duration)
 {
     double most = 0;
     const struct query_placement *placement = query->placement;
     for (int32_t i = 0; i < query->placement_count; i++) {
-        const double reach = body_reach(&placement[i].body);
+        const struct body_view *view = &placement[i].body;
+        struct owned_scene memory = {.dim = 0};
+        const struct fmb_body *body = view->frame_count > 0 ? body_of_view(view, &memory) : NULL;
+        const double reach = body && isfinite(body->reach) ? body->reach : 0;
+        scene_clear(&memory);
         for (int k = 0; k < FMB_DIM_MAX; k++) {
             const double *position = &placement[i].placed.position[k];
             const double moved =
@@ -102,18 +92,13 @@ static unsigned parts_apart(const struct limits *limits, int dim, const struct f
     return parts;
 }
 
-static bool same_certificates(const struct limits *limits, const char *a, const char *b)
-{
-    if (limits->tolerance > 0 || a == b)
-        return true;
-    return a && b && strcmp(a, b) == 0;
-}
-
 /* Finds the first difference of the two sides. Returns false if there is none. */
 static bool find_difference(const struct limits *limits, struct difference *out)
 {
     const struct fmb_client_answer *then = &out->then, *now = &out->now;
     const unsigned parts = parts_apart(limits, out->dim, &then->answer, &now->answer);
+    const char *a = then->certificate, *b = now->certificate;
+    const bool certificates = a && b ? strcmp(a, b) != 0 : a != b;
     const bool differs[DIFFERENT_KINDS] = {
         [DIFFERENT_STATUS] = then->status != now->status,
         [DIFFERENT_VERDICT] = then->answer.verdict != now->answer.verdict,
@@ -121,20 +106,12 @@ static bool find_difference(const struct limits *limits, struct difference *out)
         [DIFFERENT_BOX] = parts & FMB_WANT_BOX,
         [DIFFERENT_POINT] = parts & FMB_WANT_POINT,
         [DIFFERENT_GAP] = parts & FMB_WANT_GAP,
-        [DIFFERENT_CERTIFICATE] = !same_certificates(limits, then->certificate, now->certificate)};
+        [DIFFERENT_CERTIFICATE] = certificates && !(limits->tolerance > 0)};
     int kind = 0;
     while (kind < DIFFERENT_KINDS && !differs[kind])
         kind++;
     out->kind = (enum difference_kind)(kind < DIFFERENT_KINDS ? kind : 0);
     return kind < DIFFERENT_KINDS;
-}
-
-/* The outcome for two statuses if one or both are transient. */
-static enum replay_outcome transient_outcome(int32_t then, int32_t now)
-{
-    if (then == FMB_UNKNOWN_BODY)
-        return REPLAY_UNKNOWN;
-    return then == FMB_BUSY || now == FMB_BUSY ? REPLAY_BUSY : REPLAY_UNDEFINED;
 }
 
 /* ---- Exchanges ---- */
@@ -233,9 +210,12 @@ enum replay_outcome compare_exchanges(const struct compare_options *options, str
     exchange_begin(now);
     whole.then.status = then->head->status;
     whole.now.status = now->head->status;
-    if (logged_status_is_transient(then->head->status) ||
-        logged_status_is_transient(now->head->status))
-        return transient_outcome(then->head->status, now->head->status);
+    if (then->head->status == FMB_UNKNOWN_BODY)
+        return REPLAY_UNKNOWN;
+    if (then->head->status == FMB_BUSY || now->head->status == FMB_BUSY)
+        return REPLAY_BUSY;
+    if (now->head->status == FMB_UNKNOWN_BODY)
+        return REPLAY_UNDEFINED;
     if (scenes_differ(then, now, detail)) {
         whole.kind = DIFFERENT_SCENE;
         whole.detail = detail;

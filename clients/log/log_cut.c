@@ -78,19 +78,7 @@ static void read_logs(struct cutter *cut,
 
 /* ---- The first pass ---- */
 
-/* Reads a query or result. For a query, also determines whether it is chosen by time. Returns false
- * if it cannot be decoded. */
-static bool read_item(struct cutter *cut, enum log_kind kind, const struct log_event *event,
-                      struct match_item *out)
-{
-    if (match_read(out, kind, cut->input.log, event, &cut->result))
-        return false;
-    out->chosen = log_choice_has_time(&cut->options->choice, cut->first_utime, event->utime);
-    return out->is_result ||
-           !logged_query_read(&cut->query, kind, event->data, (uint32_t) event->kept);
-}
-
-/* A part of a log has the names of all of it at its beginning. */
+/* Takes the bodies and names, and adds queries and results that can be decoded. */
 static void survey_event(struct cutter *cut, const struct log_event *event)
 {
     const enum log_kind kind = log_kind_of(&cut->channels, event);
@@ -98,10 +86,12 @@ static void survey_event(struct cutter *cut, const struct log_event *event)
     if (!cut->started)
         cut->first_utime = event->utime;
     cut->started = true;
-    if (kind < LOG_STATUS && read_item(cut, kind, event, &item))
-        match_add(&cut->match, &item);
-    definitions_add_message(cut->definitions, cut->names, kind, event->data,
-                            (uint32_t) event->kept);
+    const char *error = definitions_add_message(cut->definitions, cut->names, kind, event->data,
+                                                (uint32_t) event->kept);
+    if (kind >= LOG_STATUS || error || match_read(&item, kind, cut->input.log, event, &cut->result))
+        return;
+    item.chosen = log_choice_has_time(&cut->options->choice, cut->first_utime, event->utime);
+    match_add(&cut->match, &item);
 }
 
 /* ---- Writing ---- */
@@ -138,15 +128,6 @@ static bool append_own(void *user, enum log_kind kind, const void *bytes, size_t
 }
 
 /* ---- The second pass ---- */
-
-/* Begins the output with the names of all bodies, unless the whole log follows, which has them. */
-static void begin_output(struct cutter *cut)
-{
-    if (log_choice_is_all(&cut->options->choice))
-        return;
-    cut->counts->names = body_names_count(cut->names);
-    body_names_write(cut->names, cut->utime, append_own, cut);
-}
 
 /* Writes the definitions that a query needs before it. A query does not define the handles that it
  * names: a service that lacks one of its bodies keeps none of them. */
@@ -196,6 +177,7 @@ static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_e
            (kind != LOG_NAMES || log_choice_is_all(choice));
 }
 
+/* The output begins with the names of all bodies, unless the whole log follows, which has them. */
 static void copy_event(struct cutter *cut, const struct log_event *event)
 {
     struct log_cut_counts *counts = cut->counts;
@@ -205,8 +187,10 @@ static void copy_event(struct cutter *cut, const struct log_event *event)
     if (!is_chosen(cut, kind, event))
         return;
     cut->utime = event->utime;
-    if (counts->kept_events++ == 0)
-        begin_output(cut);
+    if (counts->kept_events++ == 0 && !log_choice_is_all(&cut->options->choice)) {
+        counts->names = body_names_count(cut->names);
+        body_names_write(cut->names, cut->utime, append_own, cut);
+    }
     counts->kept[kind]++;
     define(cut, kind, event);
     copy(cut, event);

@@ -120,15 +120,12 @@ static bool next_file(struct log_parts *parts)
     return open_file(parts);
 }
 
-static bool is_full(const struct log_parts *parts, int64_t more)
-{
-    const int64_t written = log_written(parts->writer);
-    return has_several(parts) && written > 0 && written + more > parts->options.part_bytes;
-}
-
 bool log_parts_prepare(struct log_parts *parts, int64_t bytes)
 {
-    return !is_full(parts, bytes) || next_file(parts);
+    const int64_t written = log_written(parts->writer);
+    const bool full =
+        has_several(parts) && written > 0 && written + bytes > parts->options.part_bytes;
+    return !full || next_file(parts);
 }
 
 int64_t log_parts_written(const struct log_parts *parts)

@@ -268,14 +268,6 @@ static const char *what_is_wrong(const unsigned char *header, size_t count)
     return cut_off;
 }
 
-static int64_t count_zeros(const unsigned char *bytes, size_t count)
-{
-    size_t zeros = 0;
-    while (zeros < count && bytes[zeros] == 0)
-        zeros++;
-    return (int64_t) zeros;
-}
-
 static enum log_outcome failed(const struct log_reader *reader)
 {
     errno = reader->error;
@@ -308,8 +300,11 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
     const size_t count = (size_t) least(LOG_HEADER_BYTES, reader->size - offset);
     if (!buffer(reader, offset, count))
         return failed(reader);
-    damage->what = what_is_wrong(buffered(reader, offset), count);
-    const int64_t zeros = count_zeros(buffered(reader, offset), count);
+    const unsigned char *bytes = buffered(reader, offset);
+    int64_t zeros = 0;
+    while (zeros < (int64_t) count && bytes[zeros] == 0)
+        zeros++;
+    damage->what = what_is_wrong(bytes, count);
     reader->at = next_accepted(reader, offset);
     if (reader->error)
         return failed(reader);
@@ -322,14 +317,6 @@ static enum log_outcome take_damage(struct log_reader *reader, struct log_damage
     return LOG_DAMAGE;
 }
 
-/* Whether an accepted event is at the position. On output: its kept bytes are in the buffer. */
-static bool is_event(struct log_reader *reader, struct lengths *out)
-{
-    const int64_t at = reader->at;
-    return is_accepted(reader, at, out) && !reader->error &&
-           buffer(reader, at, LOG_HEADER_BYTES + out->channel + kept_data(*out));
-}
-
 enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
                           struct log_damage *damage)
 {
@@ -340,7 +327,8 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
     reader->sought = false;
     if (reader->at == reader->size)
         return LOG_END;
-    if (is_event(reader, &lengths))
+    if (is_accepted(reader, reader->at, &lengths) && !reader->error &&
+        buffer(reader, reader->at, LOG_HEADER_BYTES + lengths.channel + kept_data(lengths)))
         return take_event(reader, lengths, event);
     if (reader->error)
         return failed(reader);

@@ -8,24 +8,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *read_header(struct logged_query *out, const unsigned char *bytes, uint32_t size)
-{
-    if (out->kind == LOG_PAIR_QUERY) {
-        memset(&out->pair, 0, sizeof out->pair);
-        return wire_read_pair_header(bytes, size, &out->pair.header);
-    }
-    memset(&out->scene, 0, sizeof out->scene);
-    return wire_read_scene_header(bytes, size, &out->scene.header);
-}
-
 const char *logged_query_read(struct logged_query *out, enum log_kind kind,
                               const unsigned char *bytes, uint32_t size)
 {
     const bool pair = kind == LOG_PAIR_QUERY;
+    const bool whole = size <= QUERY_BYTES_MAX;
+    if (!whole)
+        memset(out, 0, sizeof *out);
     out->kind = kind;
-    const char *error = size > QUERY_BYTES_MAX ? read_header(out, bytes, size)
-                        : pair                 ? wire_read_pair_query(bytes, size, &out->pair)
-                                               : wire_read_scene_query(bytes, size, &out->scene);
+    const char *error = pair && whole ? wire_read_pair_query(bytes, size, &out->pair)
+                        : pair        ? wire_read_pair_header(bytes, size, &out->header)
+                        : whole       ? wire_read_scene_query(bytes, size, &out->scene)
+                                      : wire_read_scene_header(bytes, size, &out->header);
     out->placement = pair ? out->pair.placement : out->scene.placement;
     out->placement_count = error ? 0 : pair ? 2 : query_stored_placements(&out->scene);
     return error;

@@ -49,13 +49,6 @@ static void put_result(struct json_writer *json, const struct exchange *exchange
     json_end(json, '}');
 }
 
-static bool is_different(const struct exchange_pair *pair)
-{
-    const struct fmb_client_answer *a = &pair->answer[0], *b = &pair->answer[1];
-    return pair->answered[0] && pair->answered[1] &&
-           (a->status != b->status || !query_same_answer(&a->answer, &b->answer));
-}
-
 static bool certificates_differ(const struct exchange *then, const struct exchange *now)
 {
     const char *a = then->named.certificate, *b = now->named.certificate;
@@ -131,8 +124,11 @@ void page_take(struct page *page, const struct page_replayed *replayed, struct e
     struct exchange *const both[2] = {then, now};
     for (struct exchange_pair pair; exchange_next_of_both(both, &pair);) {
         const int last = pair.answered[1];
+        const struct fmb_client_answer *a = &pair.answer[0], *b = &pair.answer[1];
+        const bool differ = pair.answered[0] && pair.answered[1] &&
+                            (a->status != b->status || !query_same_answer(&a->answer, &b->answer));
         page_pair(page, both[last]->head->dim ? both[last]->head->dim : both[1 - last]->head->dim,
-                  is_different(&pair) ? &pair.answer[0] : NULL, &pair.answer[last]);
+                  differ ? a : NULL, &pair.answer[last]);
     }
     page_step_end(page);
     scene_clear(&memory);

@@ -166,11 +166,9 @@ static void keep_query(struct record_bodies *bodies)
             want(bodies, &bodies->placement[i].body.handle);
 }
 
-/* Drops all bodies if they take too much memory. */
-static void make_space(struct record_bodies *bodies)
+/* Drops all bodies. */
+static void drop(struct record_bodies *bodies)
 {
-    if (definitions_bytes(bodies->definitions) < RECORD_BODIES_BYTES)
-        return;
     bodies->counts.dropped += (int64_t) definitions_count(bodies->definitions);
     bodies->counts.unresolved += (int64_t) definitions_wanted(bodies->definitions);
     definitions_close(bodies->definitions);
@@ -187,7 +185,8 @@ void record_bodies_keep(struct record_bodies *bodies)
         definitions_add(bodies->definitions, &definition->body[i]);
     if (record_bodies_owner(bodies) == RECORD_BODIES)
         bodies->counts.defined += definition->body_count;
-    make_space(bodies);
+    if (definitions_bytes(bodies->definitions) >= RECORD_BODIES_BYTES)
+        drop(bodies);
 }
 
 /* ---- Requests ---- */

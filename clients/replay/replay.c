@@ -40,17 +40,6 @@ static void take_message(struct replay *replay, enum log_kind kind, const struct
         match_add(&replay->match, &item);
 }
 
-static void count_definition(struct replay *replay, const struct log_event *event,
-                             const char *error)
-{
-    const struct match_place place = match_place_of(replay->input.log, event);
-    replay->tally[place.log].definitions += !error;
-    replay->tally[place.log].unreadable_definitions += error != NULL;
-    if (error)
-        replay->sink->unreadable(replay->sink->user, &place, replay->channels.name[LOG_DEFINITION],
-                                 error);
-}
-
 static void take_golden(struct replay *replay, enum log_kind kind, const struct log_event *event)
 {
     const uint32_t size = (uint32_t) event->kept;
@@ -103,19 +92,22 @@ static void take_event(struct replay *replay, const struct log_event *event)
         return;
     }
     struct tally *tally = &replay->tally[replay->input.log];
+    const struct match_place place = match_place_of(replay->input.log, event);
+    const char *error = definitions_add_message(replay->definitions, replay->options->names, kind,
+                                                event->data, (uint32_t) event->kept);
     if (!replay->started)
         replay->tally->first_utime = event->utime;
     replay->started = true;
     tally->events++;
     tally->bytes += event->length;
     tally->statuses += kind == LOG_STATUS;
+    tally->definitions += kind == LOG_DEFINITION && !error;
+    tally->unreadable_definitions += kind == LOG_DEFINITION && error;
     tally->other_events += kind == LOG_OTHER;
-    const char *error = definitions_add_message(replay->definitions, replay->options->names, kind,
-                                                event->data, (uint32_t) event->kept);
     if (log_kind_is_query(kind) || log_kind_is_result(kind))
         take_message(replay, kind, event, error);
-    else if (kind == LOG_DEFINITION)
-        count_definition(replay, event, error);
+    else if (kind == LOG_DEFINITION && error)
+        replay->sink->unreadable(replay->sink->user, &place, replay->channels.name[kind], error);
 }
 
 static void take_damage(struct replay *replay, const struct log_damage *damage)
@@ -133,13 +125,6 @@ static void take_damage(struct replay *replay, const struct log_damage *damage)
 
 /* ---- Opening and closing ---- */
 
-static bool open_output(struct replay *replay)
-{
-    return output_open(&replay->options->write_golden, &replay->golden_file) &&
-           (!replay->golden_file ||
-            (replay->new_golden = log_begin_output(replay->golden_file)) != NULL);
-}
-
 static bool open_replay(struct replay *replay)
 {
     const struct replay_options *options = replay->options;
@@ -154,7 +139,11 @@ static bool open_replay(struct replay *replay)
     replay->definitions = definitions_open();
     replay->golden_names = options->golden ? body_names_open() : NULL;
     replay->local = local_answerer_open(options->frames, replay->definitions);
-    if ((options->bus && !replay_open_bus(replay)) || !open_output(replay))
+    if ((options->bus && !replay_open_bus(replay)) ||
+        !output_open(&options->write_golden, &replay->golden_file))
+        return false;
+    replay->new_golden = log_begin_output(replay->golden_file);
+    if (replay->golden_file && !replay->new_golden)
         return false;
     replay->channels = log_channels(options->prefix);
     return true;

@@ -122,18 +122,6 @@ bool replay_has_ended(struct replay *replay)
 
 /* ---- Results ---- */
 
-/* The query got no answer, with this status of the library. */
-static void stop_at(struct replay *replay, int status, const struct match_place *place)
-{
-    struct tally_bus *counts = counts_of(replay);
-    if (counts->end != TALLY_NO_END)
-        return;
-    counts->end = status == FMB_CLIENT_NO_BUS ? TALLY_BUS_FAILED : TALLY_NO_SERVICE;
-    counts->log = place->log;
-    counts->number = place->number;
-    counts->offset = place->offset;
-}
-
 /* Cannot fail: the library has decoded both. */
 static void decode(struct replay *replay, enum log_kind kind,
                    const struct fmb_client_raw_result *result, struct new_result *out)
@@ -159,8 +147,12 @@ static void on_result(void *user, const struct fmb_client_raw_result *result)
     struct new_result answered = {.bytes = bytes, .size = result->size, .status = result->status};
     replay->under_way--;
     slot->replay = NULL;
-    if (result->status < 0)
-        stop_at(replay, result->status, &query->place);
+    if (result->status < 0 && counts->end == TALLY_NO_END) {
+        counts->end = result->status == FMB_CLIENT_NO_BUS ? TALLY_BUS_FAILED : TALLY_NO_SERVICE;
+        counts->log = query->place.log;
+        counts->number = query->place.number;
+        counts->offset = query->place.offset;
+    }
     if (counts->end != TALLY_NO_END || slot->supplies)
         return;
     decode(replay, (enum log_kind) query->key.kind, result, &answered);
@@ -307,14 +299,8 @@ static void send_again(struct replay *replay)
 
 /* ---- Queries ---- */
 
-/* Whether a client can send the query: it is not too long for a datagram, and its ids are valid. */
-static bool can_be_sent(const struct match_item *query, uint32_t size)
-{
-    return size <= QUERY_BYTES_MAX && query_id_ok(query->key.client_id) &&
-           query_id_ok(query->key.sequence_number);
-}
-
-/* What cannot be sent is answered here, as a service would refuse it. */
+/* A query that is too long for a datagram, or whose ids no client can have, is answered here, as a
+ * service would refuse it. */
 static void answer_query(struct replay *replay, struct match_item *query)
 {
     unsigned char *bytes = replay->query_bytes;
@@ -322,7 +308,8 @@ static void answer_query(struct replay *replay, struct match_item *query)
     uint32_t size;
     if (!input_read_again(&replay->input, query->place.log, query->place.offset, bytes, &size)) {
         replay_fail(replay, replay->paths[query->place.log], errno);
-    } else if (replay->client && can_be_sent(query, size)) {
+    } else if (replay->client && size <= QUERY_BYTES_MAX && query_id_ok(query->key.client_id) &&
+               query_id_ok(query->key.sequence_number)) {
         send_query(replay, query, bytes, size);
     } else if (local_answer(replay->local, (enum log_kind) query->key.kind, bytes, size,
                             &answered)) {

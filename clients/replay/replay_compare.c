@@ -101,26 +101,6 @@ static bool read_golden_query(struct replay *replay, const struct match_item *re
                              &size, &replay->golden_query);
 }
 
-static void read_new(struct replay *replay, enum log_kind kind, const struct new_result *answered)
-{
-    const char *error =
-        logged_result_read(&replay->now, kind, answered->bytes, (uint32_t) answered->size);
-    assert(!error); /* encoded by this process, or decoded before */
-    (void) error;
-}
-
-static void add_to_page(struct replay *replay, const struct match_item *query,
-                        struct exchange *then, struct exchange *now, enum replay_outcome outcome)
-{
-    const struct page_replayed replayed = {.log = replay->paths[query->place.log],
-                                           .place = query->place,
-                                           .begin = replay->tally->first_utime,
-                                           .outcome = outcome,
-                                           .note = replay->note};
-    definitions_fill(replay->definitions, &replay->compared);
-    page_take(replay->options->page, &replayed, then, now);
-}
-
 /* ---- Comparing ---- */
 
 /* The counts of the query's label, which may be "". */
@@ -185,7 +165,10 @@ static void compare_read(struct replay *replay, const struct match_item *query,
          !is_unchanged(replay, result,
                        logged_result_read(&replay->then, kind, replay->result_bytes, size))))
         return;
-    read_new(replay, kind, answered);
+    const char *error =
+        logged_result_read(&replay->now, kind, answered->bytes, (uint32_t) answered->size);
+    assert(!error); /* encoded by this process, or decoded before */
+    (void) error;
     if (replay->options->compare.tolerance > 0)
         definitions_fill(replay->definitions, &replay->compared);
     replay->item = query;
@@ -196,8 +179,15 @@ static void compare_read(struct replay *replay, const struct match_item *query,
             ? REPLAY_SAME
             : compare_exchanges(&replay->options->compare, &then, &now, on_difference, replay);
     count(replay, query, outcome, result ? replay->then.head.compute_ns : 0);
-    if (replay->options->page)
-        add_to_page(replay, query, &then, &now, outcome);
+    if (!replay->options->page)
+        return;
+    const struct page_replayed replayed = {.log = replay->paths[query->place.log],
+                                           .place = query->place,
+                                           .begin = replay->tally->first_utime,
+                                           .outcome = outcome,
+                                           .note = replay->note};
+    definitions_fill(replay->definitions, &replay->compared);
+    page_take(replay->options->page, &replayed, &then, &now);
 }
 
 void replay_compare(struct replay *replay, const struct match_item *query,

@@ -28,24 +28,18 @@ static void write_side(struct json_writer *json, const char *key, int dim, bool 
     json_end(json, '}');
 }
 
-static void write_names(struct json_writer *json, const struct body_names *names,
-                        const struct difference *difference)
+static void write_difference(struct json_writer *json, const struct body_names *names,
+                             const struct difference *difference)
 {
     const int64_t *id = difference->body_id;
     const char *name[2] = {body_names_find(names, difference->client_id, id[0]),
                            body_names_find(names, difference->client_id, id[1])};
-    report_names_json(json, name);
-}
-
-static void write_difference(struct json_writer *json, const struct body_names *names,
-                             const struct difference *difference)
-{
     if (!difference->whole) {
-        json_integer(json, "a", difference->body_id[0]);
-        json_integer(json, "b", difference->body_id[1]);
+        json_integer(json, "a", id[0]);
+        json_integer(json, "b", id[1]);
         json_integers(json, "placements",
                       (const int64_t[]){difference->placement[0], difference->placement[1]}, 2);
-        write_names(json, names, difference);
+        report_names_json(json, name);
     }
     json_string(json, "kind", difference_name[difference->kind]);
     if (difference->detail) {
