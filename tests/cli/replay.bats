@@ -71,27 +71,6 @@ xpath() {
         '.compute | .then.count == 72 and .now.count == 72 and .unit == "ns"'
 }
 
-@test "every kind of log has no differences" {
-    for log in arm clients foreign refused blast moving; do
-        replay $log.log
-        counts '.different == 0 and .queries == .same + .busy + .unknown_body + .not_defined + .no_result'
-    done
-}
-
-# bats test_tags=release
-@test "what a service could not answer then is counted apart" {
-    replay clients.log
-    ended 0
-    counts '.busy > 0 and .unknown_body > 0 and .no_result > 0 and .same > 0'
-    replay refused.log
-    ended 0
-    counts '.channels.FMB_PAIR_QUERY.unknown_body > 0'
-    edit --busy 3 --unknown 5 --busy 11 moving.log
-    replay spoiled.log
-    ended 0
-    counts '.busy == 2 and .unknown_body == 1 and .same == 37'
-}
-
 # ---- Differences ------------------------------------------------------------------------------
 
 # bats test_tags=release
@@ -142,25 +121,6 @@ xpath() {
     run "$FMB" replay spoiled.log
     ended 1
     [[ ${lines[0]} =~ \ box\ max\ x:\ inf,\ now\ [-0-9.e]+$ ]]
-}
-
-# bats test_tags=release
-@test "an altered point is a difference beyond --tolerance" {
-    generate --blast pairs 10 --dim 3 --box --point points.log
-    edit --nudge "$("$FMB" log results --json --all points.log | jq -s 'map(.pairs[0].point != null) | index(true)')" 1e-9 points.log
-    replay spoiled.log
-    ended 1
-    counts '.different_in.point == 1 and .different == 1' \
-        '.differences[0] | .then.point.position[0] != .now.point.position[0] and .then.point.time == .now.point.time' \
-        '.differences[0] | .kind == "point" and .then.box == .now.box'
-    run "$FMB" replay spoiled.log
-    ended 1
-    [[ ${lines[0]} =~ \ \ point\ position\ x:\ [-0-9.e]+,\ now\ [-0-9.e]+\ \(-1e-09\)$ ]]
-    [[ $output == *'different in: 1 point'* ]]
-    replay --tolerance 1e-15 spoiled.log
-    ended 1
-    replay --tolerance 1e-6 spoiled.log
-    ended 0
 }
 
 # bats test_tags=release
@@ -234,16 +194,6 @@ xpath() {
 # ---- What stands where -------------------------------------------------------------------------
 
 # bats test_tags=release
-@test "results match wherever they are: later, after all queries, before all queries" {
-    for how in '--delay 1' '--delay 37' --last --first '--utime 5'; do
-        # shellcheck disable=SC2086
-        edit $how clients.log
-        [ "$(report_of spoiled.log | jq -c '[.same, .busy, .unknown_body, .no_result]')" = \
-            "$(report_of clients.log | jq -c '[.same, .busy, .unknown_body, .no_result]')" ]
-    done
-}
-
-# bats test_tags=release
 @test "repeated, missing and unmatched results are counted" {
     edit --repeat 4 --repeat 50 arm.log
     replay spoiled.log
@@ -270,15 +220,6 @@ xpath() {
     [[ $output == *'; 1 result that contradicts an earlier one'* ]]
     junit spoiled.log
     [ "$(xpath '//testsuite/@errors')" = 1 ]
-}
-
-# bats test_tags=release
-@test "a second golden result that contradicts the first is a difference" {
-    edit --repeat 4 --flip 5 arm.log
-    replay --golden spoiled.log arm.log
-    ended 1
-    counts '.same == 72 and .different == 0 and .contradictions == 1 and .results == 73'
-    [[ $stderr == *'spoiled.log: event '*': contradicts an earlier result of the same query' ]]
 }
 
 # bats test_tags=release
@@ -326,14 +267,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
     replay "${parts[@]}"
     ended 0
     counts '.same == 72'
-}
-
-# bats test_tags=release
-@test "a clock that was set back hides nothing" {
-    edit --clock 20 5000000 --flip 30 arm.log
-    replay spoiled.log
-    ended 1
-    counts '.queries == 72 and .same == 71 and .differences[0].time < 0'
 }
 
 # bats test_tags=release
@@ -542,16 +475,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 
 # ---- What is broken ----------------------------------------------------------------------------
 
-@test "a truncated log is read up to its end" {
-    for lost in 1 27 28 29 300; do
-        head -c -$lost arm.log > spoiled.log
-        replay spoiled.log
-        ended 2
-        [[ $stderr == *'spoiled.log: offset '*': the last event is cut off' ]]
-        counts ".damages == 1 and .bytes == $(stat -Lc %s arm.log) - $lost and .same >= 70"
-    done
-}
-
 @test "foreign bytes in a log are damage" {
     edit --garbage 50 --garbage 3 --garbage 0 arm.log
     replay spoiled.log
@@ -645,29 +568,6 @@ fmb: b.log: offset 0: $(($("$EDIT" --offset 78 arm.log) - middle)) bytes: no eve
 }
 
 # ---- JUnit -------------------------------------------------------------------------------------
-
-# bats test_tags=release
-@test "JUnit: a log without differences passes" {
-    junit arm.log
-    ended 0
-    [ "$(xpath 'count(//testcase)')" = 3 ]
-    [ "$(xpath 'count(//failure | //error)')" = 0 ]
-    [ "$(xpath '//testsuite/@tests')/$(xpath '//testsuite/@failures')" = 3/0 ]
-    [ "$(xpath '//testsuite/@name')" = arm.log ]
-}
-
-# bats test_tags=release
-@test "JUnit: a difference is a failure of its log" {
-    "$EDIT" --flip 3 --flip 60 arm.log flipped.log
-    junit arm.log flipped.log arm.log
-    ended 1
-    [ "$(xpath 'count(//testsuite)')" = 3 ]
-    [ "$(xpath '//testsuite[2]/@failures')" = 1 ]
-    [ "$(xpath 'count(//testsuite[2]/testcase[@name="FMB_SCENE_QUERY"]/failure)')" = 1 ]
-    [ "$(xpath 'count(//failure)')" = 1 ]
-    [ "$(xpath '//failure' | grep -c ^event)" = 2 ]
-    [[ $(xpath '//failure/@message') == '2 of 24 queries'* ]]
-}
 
 # Scenes are queries 0, 3, 6 and so on.
 @test "a scene that differs is named by its label, which is a JUnit case" {

@@ -20,7 +20,6 @@ static const char usage[] =
     "  --flip N           result N says another verdict\n"
     "  --nudge N E        a number of result N is larger by E\n"
     "  --witness N        the first gap of result N has witness points (1, 2, 3) and (4, 5, 6)\n"
-    "  --busy N, --unknown N  result N says that the service was busy, or held no such body\n"
     "  --refuse N STATUS  result N has this status, and nothing else\n"
     "  --certify N TEXT   the certificate of result N\n"
     "  --label N TEXT     the label of query N, a scene query\n"
@@ -30,7 +29,6 @@ static const char usage[] =
     "  --delay K          results come K events later\n"
     "  --last, --first    all results come after all queries, or before them\n"
     "  --utime N          result N does not echo the utime of its query\n"
-    "  --clock N US       from event N on the clock of the log is late by so much\n"
     "  --version N        event N is of another message type\n"
     "  --shorten N        event N lacks its last byte\n"
     "  --garbage N        before event N stands what is no event\n"
@@ -226,9 +224,7 @@ static void flip_scene(const char *argument)
 
 static void nudge_pair(const char *argument)
 {
-    if (pair.answer.has_point)
-        pair.answer.point[1] += atof(argument);
-    else if (pair.answer.has_box)
+    if (pair.answer.has_box)
         pair.answer.box[1][0] += atof(argument);
     else if (pair.answer.has_contact)
         pair.answer.contact[1] += atof(argument);
@@ -240,9 +236,7 @@ static void nudge_pair(const char *argument)
 
 static void nudge_scene(const char *argument)
 {
-    if (scene.has_points)
-        scene.points[1] += atof(argument);
-    else if (scene.has_boxes)
+    if (scene.has_boxes)
         scene.boxes[scene.dim] += atof(argument);
     else if (scene.has_times)
         scene.times[1] += atof(argument);
@@ -328,16 +322,6 @@ static void witness(char **argument)
 static void nudge(char **argument)
 {
     change(number(is_result, argument[0]), nudge_pair, nudge_scene, argument[1]);
-}
-
-static void busy(char **argument)
-{
-    change(number(is_result, argument[0]), refuse_pair, refuse_scene, "2");
-}
-
-static void unknown(char **argument)
-{
-    change(number(is_result, argument[0]), refuse_pair, refuse_scene, "1");
 }
 
 static void refuse(char **argument)
@@ -460,12 +444,6 @@ static void first(char **argument)
     move_results(-(double) count);
 }
 
-static void set_clock(char **argument)
-{
-    for (size_t i = number(is_any, argument[0]); i < count; i++)
-        event[i].utime -= atoll(argument[1]);
-}
-
 static void version(char **argument)
 {
     event[number(is_any, argument[0])].data[7] ^= 1;
@@ -513,8 +491,6 @@ static const struct edit {
     {"--flip", 1, flip},
     {"--nudge", 2, nudge},
     {"--witness", 1, witness},
-    {"--busy", 1, busy},
-    {"--unknown", 1, unknown},
     {"--certify", 2, certify},
     {"--utime", 1, utime},
     {"--drop", 1, drop},
@@ -523,7 +499,6 @@ static const struct edit {
     {"--delay", 1, delay},
     {"--last", 0, last},
     {"--first", 0, first},
-    {"--clock", 2, set_clock},
     {"--version", 1, version},
     {"--shorten", 1, shorten},
     {"--garbage", 1, garbage},

@@ -88,22 +88,6 @@ is() {
 }
 
 # bats test_tags=release
-@test "lcm-logplayer plays a log, and another recording of that holds the same" {
-    start_fmbd
-    start_record "$log"
-    query
-    query --certificate
-    finish_record
-    stop_fmbd
-    [ "$(events "$log" | wc -l)" -ge 134 ]
-    start_record "$log.2"
-    lcm-logplayer -s 10 "$log" 3>&-
-    finish_record
-    events "$log" > "$BATS_TEST_TMPDIR/played"
-    events "$log.2" | cmp - "$BATS_TEST_TMPDIR/played"
-}
-
-# bats test_tags=release
 @test "SIGINT and SIGTERM end a recording with all earlier messages" {
     for signal in INT TERM; do
         start_record "$log.$signal"
@@ -202,21 +186,6 @@ is() {
     [ "$(cd "$BATS_TEST_TMPDIR" && echo log.*)" = log.000 ]
 }
 
-# bats test_tags=release
-@test "of the files of a rotation the newest are kept" {
-    start_record --split-mb 0.05 --max-files 2 "$log"
-    "$TOOLS/fake-peer" numbers 5 $(seq 1000)
-    finish_record
-    is '.received.pair_queries == 1000 and (.files | length) == 2'
-    [ "$(echo "$log".*)" = "$(jq -r '.files | join(" ")' "$report")" ]
-    # The last ones: the newest event is that of the last number.
-    newest=$(events "$(jq -r '.files[1]' "$report")" | tail -n 1)
-    start_record "$log"
-    "$TOOLS/fake-peer" numbers 5 1000
-    finish_record
-    [ "$(events "$log")" = "$newest" ]
-}
-
 # ---- Disks -----------------------------------------------------------------------------------
 
 # failed MESSAGE: it ended by itself and reported why; the log has whole events only.
@@ -286,16 +255,6 @@ END
     run --separate-stderr bash -c '"$0" record --duration 0.1 "$1" > /dev/full' "$FMB" "$log"
     [ "$status" = 1 ]
     [[ $stderr == *"fmb: standard output: No space left on device" ]]
-}
-
-# bats test_tags=release
-@test "a recording that is killed leaves what it has flushed" {
-    start_record "$log"
-    "$TOOLS/fake-peer" numbers 5 $(seq 300)
-    wait_until has_events FMB_PAIR_QUERY "$log" 300
-    kill -KILL "$record"
-    wait "$record" || true
-    [ "$(count_events FMB_PAIR_QUERY "$log")" = 300 ]
 }
 
 @test "a log that is deleted or truncated ends the recording" {
@@ -381,32 +340,6 @@ resolves() {
     is '.lost == 0 and .unresolved_handles == 0' '.defined_bodies >= 12 and .defined_bodies % 12 == 0'
     resolves "$log"
     stop_fmbd
-}
-
-# hulls: a scene of hulls of 1 to 128 vertices, turned and moving, one in a body of several frames.
-hulls() {
-    jq -n '{dim: 3, label: "hulls", bodies: [range(1; 8) as $i | {id: $i,
-        position: [$i * 0.4, $i % 3 * 0.2, 0.1], orientation: [1, $i * 0.1, 0.3, -0.2], velocity: [-0.1 * $i, 0, 0.1]}
-        + ({shape: "hull", vertices: [range(pow(2; $i)) | [(. * $i | sin), (. * 3 | cos), (. * . | sin)]]}
-           | if $i == 4 then {frames: [., {shape: "box", size: [0.2, 0.3, 0.4]}]} else . end)]}'
-}
-
-# bats test_tags=release
-@test "hulls are answered, recorded, cut and replayed with the bits of --local" {
-    hulls > "$BATS_TEST_TMPDIR/hulls.json"
-    "$FMB" query --json --box --local "$BATS_TEST_TMPDIR/hulls.json" > "$BATS_TEST_TMPDIR/local"
-    start_fmbd
-    start_record "$log"
-    "$FMB" query --json --box "$BATS_TEST_TMPDIR/hulls.json" | cmp - "$BATS_TEST_TMPDIR/local"
-    wait_until has_events FMB_SCENE_RESULT "$log" 1
-    finish_record
-    stop_fmbd
-    "$FMB" replay --json "$log" > "$BATS_TEST_TMPDIR/replay"
-    jq -e '.same >= 1 and .different == 0' "$BATS_TEST_TMPDIR/replay"
-    "$FMB" log cut -o "$BATS_TEST_TMPDIR/cut" --channel 'FMB_SCENE_.*' "$log"
-    "$FMB" replay "$BATS_TEST_TMPDIR/cut"
-    "$FMB" log scene --event 0 "$BATS_TEST_TMPDIR/cut" 2> "$messages" |
-        "$FMB" query --json --box --local | cmp - "$BATS_TEST_TMPDIR/local"
 }
 
 # A ball meets three bodies with ends: one moves, one turns, one does both. It does both in two consecutive
