@@ -163,15 +163,6 @@ static void print_time(const char *name, int64_t utime)
     printf("  %-5s %s.%06" PRId64 " UTC\n", name, text, part);
 }
 
-/* The difference of the times does not overflow as an unsigned number. */
-static void print_span(const struct info *info)
-{
-    const uint64_t span = (uint64_t) info->end - (uint64_t) info->begin;
-    print_time("from", info->begin);
-    print_time("to", info->end);
-    printf("  %" PRIu64 ".%06" PRIu64 " s\n", span / MICROSECONDS, span % MICROSECONDS);
-}
-
 static void print_damage(const struct info *info)
 {
     char text[NUMBER_TEXT_MAX];
@@ -198,7 +189,10 @@ static void print_text(const struct info *info)
     number_count(stdout, info->size, "byte, ", "bytes, ");
     number_count(stdout, info->events, "event\n", "events\n");
     if (info->events > 0) {
-        print_span(info);
+        const uint64_t span = (uint64_t) info->end - (uint64_t) info->begin; /* no overflow */
+        print_time("from", info->begin);
+        print_time("to", info->end);
+        printf("  %" PRIu64 ".%06" PRIu64 " s\n", span / MICROSECONDS, span % MICROSECONDS);
         print_channels(info);
     }
     if (info->damages > 0)

@@ -62,15 +62,6 @@ static void note(struct flaw *flaw, int log, int64_t offset, const char *what)
     }
 }
 
-static void take_event(struct printing *printing, const struct log_event *event)
-{
-    const char *error = result_rows_take(printing->results, log_kind_of(&printing->channels, event),
-                                         event->number, event->data, (uint32_t) event->kept);
-    if (error)
-        note(error == result_rows_no_query ? &printing->no_query : &printing->unreadable,
-             printing->input.log, event->offset, error);
-}
-
 /* Damage ends the run, with the rows before it. */
 static void take_all(struct printing *printing)
 {
@@ -81,10 +72,15 @@ static void take_all(struct printing *printing)
     progress_begin("bytes");
     while (more && !ferror(stdout) &&
            (outcome = input_next(&printing->input, &event, &damage)) != LOG_END) {
+        const char *error = NULL;
         more = outcome == LOG_EVENT;
         if (more)
-            take_event(printing, &event);
-        else
+            error = result_rows_take(printing->results, log_kind_of(&printing->channels, &event),
+                                     event.number, event.data, (uint32_t) event.kept);
+        if (error)
+            note(error == result_rows_no_query ? &printing->no_query : &printing->unreadable,
+                 printing->input.log, event.offset, error);
+        else if (!more)
             note(&printing->unreadable, printing->input.log,
                  outcome == LOG_DAMAGE ? damage.offset : printing->input.passed,
                  outcome == LOG_DAMAGE ? damage.what : strerror(errno));

@@ -291,23 +291,16 @@ static void report_json(const struct recording *recording)
     json_object_end(&json);
 }
 
-static void print_where(const struct log_parts *parts)
-{
-    const char *path = parts->options.path;
-    escape_text(stdout, path);
-    if (parts->options.part_bytes == 0)
-        printf(": ");
-    else if (parts->first == parts->number)
-        printf(".%03ld: ", parts->number);
-    else
-        printf(".%03ld to .%03ld: ", parts->first, parts->number);
-}
-
 static void report_text(const struct recording *recording)
 {
     char events[NUMBER_TEXT_MAX], bytes[NUMBER_TEXT_MAX];
-    print_where(&recording->parts);
-    printf("%s messages in %.1f s, %s bytes\n", number_grouped(recording->events, events),
+    const struct log_parts *parts = &recording->parts;
+    escape_text(stdout, parts->options.path);
+    if (parts->options.part_bytes > 0)
+        printf(".%03ld", parts->first);
+    if (parts->first < parts->number)
+        printf(" to .%03ld", parts->number);
+    printf(": %s messages in %.1f s, %s bytes\n", number_grouped(recording->events, events),
            recording->seconds, number_grouped(recording->bytes, bytes));
     for (int kind = 0; kind < LOG_KINDS; kind++)
         if (recording->received[kind] > 0 || kind <= LOG_STATUS)

@@ -228,19 +228,12 @@ static void report_one(void *user, const struct difference *found)
                 run->first_utime);
 }
 
-/* Whether counts have a meaning: not without an event or an answer, nor without a service on the
- * bus. */
-static bool has_counts(const struct replay_run *run, const struct tally *all)
-{
-    const bool any = run->good ? all->events > 0 : tally_both(all).queries > 0;
-    return run->begun && any &&
-           (!run->options->live || all->bus.answered > 0 ||
-            (all->bus.used && all->bus.end == TALLY_NO_END));
-}
-
 static void report_all(struct replay_run *run, const struct tally *all, int code)
 {
     const int64_t beyond = listing_beyond(run->differences);
+    const struct tally_bus *bus = &all->bus;
+    const bool any = run->good ? all->events > 0 : tally_both(all).queries > 0;
+    const bool answered = bus->answered > 0 || (bus->used && bus->end == TALLY_NO_END);
     if (run->complaints > COMPLAINTS_MAX)
         complain("and %" PRId64 " more of these", run->complaints - COMPLAINTS_MAX);
     if (run->options->json)
@@ -252,7 +245,8 @@ static void report_all(struct replay_run *run, const struct tally *all, int code
     }
     if (beyond > 0)
         printf("and %" PRId64 " more differences (--limit)\n", beyond);
-    if (has_counts(run, all))
+    /* Counts have no meaning without an event or an answer, nor without a service on the bus. */
+    if (run->begun && any && (!run->options->live || answered))
         replay_text_summary(stdout, all);
 }
 
@@ -345,16 +339,6 @@ static int run_replay(struct replay_arguments *options)
     return code;
 }
 
-/* Checks the options that apply only with --bus, or only without. */
-static bool check_bus(const struct args *args, const struct replay_arguments *options)
-{
-    if (options->live && options->frames > 0)
-        return args_error(args, "--frames does not go with --bus");
-    if (!options->live && (options->bus.timeout > 0 || options->retries >= 0 || args->bus.url))
-        return args_error(args, "--timeout, --retries and --lcm-url go with --bus");
-    return true;
-}
-
 /* Sets the options that were not given. */
 static void complete(struct replay_arguments *options, const struct args_bus *where)
 {
@@ -401,7 +385,11 @@ int cmd_replay(int argc, char **argv)
     const int code = args_parse(&args, argc, argv);
     if (code != ARGS_RUN)
         return code;
-    if (!check_bus(&args, &options))
+    const bool of_bus = options.bus.timeout > 0 || options.retries >= 0 || args.bus.url;
+    if ((options.live && options.frames > 0 &&
+         !args_error(&args, "--frames does not go with --bus")) ||
+        (!options.live && of_bus &&
+         !args_error(&args, "--timeout, --retries and --lcm-url go with --bus")))
         return ARGS_USAGE;
     options.replay.log = args.operands;
     options.replay.log_count = args.operand_count;

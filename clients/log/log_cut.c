@@ -150,25 +150,19 @@ static void define(struct cutter *cut, enum log_kind kind, const struct log_even
     definitions_add_query(cut->definitions, &cut->query);
 }
 
-/* Returns the item of the first pass that is this event; NULL: it is neither a query nor a result.
- * To be called for each event, in order. */
-static const struct match_item *next_item(struct cutter *cut, const struct log_event *event)
-{
-    if (cut->next == cut->match.count)
-        return NULL;
-    const struct match_item *item = &cut->match.item[cut->next];
-    const bool found = item->place.log == cut->input.log && item->place.offset == event->offset;
-    cut->next += found;
-    return found ? item : NULL;
-}
-
 /* A result is chosen with its query. Results without a query and other messages are chosen by their
- * own time. */
+ * own time. To be called for each event, in order: the items of the first pass are in that order.
+ */
 static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_event *event)
 {
     const struct log_choice *choice = &cut->options->choice;
-    const struct match_item *item = next_item(cut, event);
-    const struct match_item *query = item && item->is_result ? item->other : item;
+    const struct match_item *item =
+        cut->next < cut->match.count ? &cut->match.item[cut->next] : NULL;
+    const struct match_item *query = NULL;
+    if (item && item->place.log == cut->input.log && item->place.offset == event->offset) {
+        query = item->is_result ? item->other : item;
+        cut->next++;
+    }
     if (!log_choice_has_channel(choice, event->channel))
         return false;
     if (query)
@@ -208,17 +202,6 @@ static void take_damage(struct cutter *cut, const struct log_damage *damage)
 
 /* ---- The cut ---- */
 
-static bool open_cut(struct cutter *cut)
-{
-    const struct log_cut_options *options = cut->options;
-    if (!input_open(&cut->input, options->log, options->log_count))
-        return false;
-    cut->channels = log_channels(options->prefix);
-    if (output_open(&options->output, &cut->file))
-        cut->output = log_begin_output(cut->file);
-    return cut->output != NULL;
-}
-
 static void run(struct cutter *cut)
 {
     cut->definitions = definitions_open();
@@ -241,7 +224,11 @@ bool log_cut(const struct log_cut_options *options, struct log_cut_counts *count
     *counts = (struct log_cut_counts){.events = 0};
     cut->options = options;
     cut->counts = counts;
-    if (open_cut(cut))
+    cut->channels = log_channels(options->prefix);
+    if (input_open(&cut->input, options->log, options->log_count) &&
+        output_open(&options->output, &cut->file))
+        cut->output = log_begin_output(cut->file);
+    if (cut->output)
         run(cut);
     else
         cut->failed = true;

@@ -115,19 +115,6 @@ bool log_flush(struct log_writer *writer)
     return complete || cut_back(writer, done - whole, error);
 }
 
-static void put_header(struct log_writer *writer, int64_t utime, const char *channel,
-                       size_t channel_length, size_t size)
-{
-    unsigned char *header = writer->buffer + writer->used;
-    big_endian_put_32(header, UINT32_C(0xeda1da01));
-    big_endian_put_64(header + 4, (uint64_t) writer->number++);
-    big_endian_put_64(header + 12, (uint64_t) utime);
-    big_endian_put_32(header + 20, (uint32_t) channel_length);
-    big_endian_put_32(header + 24, (uint32_t) size);
-    memcpy(header + LOG_HEADER_BYTES, channel, channel_length);
-    writer->used += LOG_HEADER_BYTES + channel_length;
-}
-
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size)
 {
@@ -138,10 +125,16 @@ bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
     if (bytes > writer->capacity - writer->used && !log_flush(writer))
         return false;
     writer->buffer = allocate_grow(writer->buffer, &writer->capacity, bytes, 1);
-    put_header(writer, utime, channel, channel_length, size);
+    unsigned char *header = writer->buffer + writer->used, *name = header + LOG_HEADER_BYTES;
+    big_endian_put_32(header, UINT32_C(0xeda1da01));
+    big_endian_put_64(header + 4, (uint64_t) writer->number++);
+    big_endian_put_64(header + 12, (uint64_t) utime);
+    big_endian_put_32(header + 20, (uint32_t) channel_length);
+    big_endian_put_32(header + 24, (uint32_t) size);
+    memcpy(name, channel, channel_length);
     if (size > 0)
-        memcpy(writer->buffer + writer->used, data, size);
-    writer->used += size;
+        memcpy(name + channel_length, data, size);
+    writer->used += bytes;
     return true;
 }
 

@@ -269,19 +269,15 @@ void page_pair(struct page *page, int dim, const struct fmb_client_answer *then,
 
 /* ---- Steps ----------------------------------------------------------------------------------- */
 
-static bool may_keep(struct page *page, bool differs)
-{
-    const size_t bytes = text_size(&page->list[LIST_STEPS]) + text_size(&page->list[LIST_SHAPES]);
-    if (page->full_bytes == 0 && bytes >= PAGE_STEPS_BYTES)
-        page->full_bytes = bytes;
-    return page->full_bytes == 0 || (differs && bytes - page->full_bytes < PAGE_DIFFERENT_BYTES);
-}
-
 struct json_writer *page_step_begin(struct page *page, const struct page_step *step)
 {
     struct json_writer *json = &page->list[LIST_STEPS].json;
+    const size_t bytes = text_size(&page->list[LIST_STEPS]) + text_size(&page->list[LIST_SHAPES]);
     page->step_count++;
-    page->keeps = may_keep(page, step->differs);
+    if (page->full_bytes == 0 && bytes >= PAGE_STEPS_BYTES)
+        page->full_bytes = bytes;
+    page->keeps =
+        page->full_bytes == 0 || (step->differs && bytes - page->full_bytes < PAGE_DIFFERENT_BYTES);
     if (!page->keeps) {
         if (page->left_out++ == 0)
             page->left_out_time[0] = page->left_out_time[1] = step->time;

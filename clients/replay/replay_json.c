@@ -110,19 +110,6 @@ static void write_bus(struct json_writer *json, const struct tally_bus *bus)
     json_end(json, '}');
 }
 
-static void write_channels(struct json_writer *json, const struct tally *tally)
-{
-    const struct tally_channel both = tally_both(tally);
-    write_counts(json, &both);
-    json_begin(json, "channels", '{');
-    for (int i = 0; i < TALLY_CHANNELS; i++) {
-        json_begin(json, tally_channel_name[i], '{');
-        write_counts(json, &tally->channel[i]);
-        json_end(json, '}');
-    }
-    json_end(json, '}');
-}
-
 void replay_json_end(struct json_writer *json, const struct tally *tally, int64_t not_listed,
                      int exit_code)
 {
@@ -137,7 +124,15 @@ void replay_json_end(struct json_writer *json, const struct tally *tally, int64_
     json_integer(json, "unreadable_definitions", tally->unreadable_definitions);
     json_integer(json, "damages", tally->damages);
     json_integer(json, "damaged_bytes", tally->damaged_bytes);
-    write_channels(json, tally);
+    const struct tally_channel both = tally_both(tally);
+    write_counts(json, &both);
+    json_begin(json, "channels", '{');
+    for (int i = 0; i < TALLY_CHANNELS; i++) {
+        json_begin(json, tally_channel_name[i], '{');
+        write_counts(json, &tally->channel[i]);
+        json_end(json, '}');
+    }
+    json_end(json, '}');
     json_begin(json, "compute", '{');
     json_string(json, "unit", "ns");
     write_times(json, "then", &tally->then);

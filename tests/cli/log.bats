@@ -159,14 +159,6 @@ field() {
     said "fmb: $BATS_TEST_TMPDIR/none.log: No such file or directory"
 }
 
-@test "logs that LCM writes are read" {
-    # The logs of the regression set were written by liblcm.
-    info --json "$BATS_TEST_DIRNAME/../logs/clients.log"
-    ended 0
-    [ "$(field '[.channels[] | [.channel, .type]]')" = \
-        '[["FMB_DEFINITION","fmb_msgs.definition_t"],["FMB_DEFINITION_QUERY","fmb_msgs.definition_query_t"],["FMB_PAIR_QUERY","fmb_msgs.pair_query_t"],["FMB_PAIR_RESULT","fmb_msgs.pair_result_t"],["FMB_SCENE_QUERY","fmb_msgs.scene_query_t"],["FMB_SCENE_RESULT","fmb_msgs.scene_result_t"],["FMB_STATUS","fmb_msgs.status_t"]]' ]
-}
-
 # ---- Damage ----------------------------------------------------------------------------------
 
 @test "damage is reported with its offset, and the good events are read" {
@@ -197,37 +189,6 @@ field() {
     [[ $output == *"    and 5 more" ]]
     info --json "$log"
     [ "$(field '[.damage.places, (.damage.first | length)]')" = '[25,20]' ]
-}
-
-@test "every truncation of a log is read as far as it goes" {
-    good > "$BATS_TEST_TMPDIR/good"
-    # size, exit code, events
-    while read -r size code events; do
-        head -c "$size" "$BATS_TEST_TMPDIR/good" > "$log"
-        info --json "$log"
-        ended "$code"
-        [ "$code" = 2 ] || [ "$(field .events)" = "$events" ]
-    done <<< "0 0 0
-1 2 -
-28 2 -
-53 2 -
-54 0 1
-55 1 1
-105 1 1
-106 0 2
-107 1 2
-151 1 2
-152 0 3"
-}
-
-@test "a hole of ten gigabytes is skipped" {
-    good > "$log"
-    truncate -s 10G "$log" || skip 'no such large files here'
-    good >> "$log"
-    info --json "$log"
-    ended 1
-    [ "$(field '[.size, .events, .damage.first]')" = \
-        '[10737418392,6,[{"offset":152,"length":10737418088,"what":"zeros"}]]' ]
 }
 
 @test "a file that is not a log is refused" {

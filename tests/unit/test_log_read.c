@@ -149,11 +149,6 @@ static void make_small(void)
     log_bytes_event(&whole, 30, "C", "\0\0\0", 3);
 }
 
-static void an_empty_file_is_a_log_of_no_events(void **state)
-{
-    assert_int_equal(read_bytes(noise, 0).count, 0);
-}
-
 static void an_event_is_what_was_written(void **state)
 {
     struct log_event event;
@@ -308,28 +303,6 @@ static void every_damaged_byte_is_reported(void **state)
         }
 }
 
-static void flip_two(size_t one, size_t two, unsigned char first, unsigned char second)
-{
-    whole.bytes[one] ^= first;
-    whole.bytes[two] ^= second;
-}
-
-static void every_two_damaged_bytes_are_reported(void **state)
-{
-    const size_t step = getenv("FMB_FAST") ? 3 : 1;
-    make_small();
-    for (size_t one = 0; one < whole.size; one++)
-        for (size_t two = one + 1; two < whole.size; two += step) {
-            const unsigned char first = flips[one % FLIPS], second = flips[(one + two) % FLIPS];
-            flip_two(one, two, first, second);
-            const struct report report = read_bytes(whole.bytes, whole.size);
-            flip_two(one, two, first, second);
-            for (size_t i = 0; i < whole.count; i++)
-                assert_true(touches(one, i) || touches(two, i) ||
-                            reports_event(&report, whole.begin[i], whole.end[i]));
-        }
-}
-
 /* Any bytes between any two events, also such as begin like one. */
 static void garbage_is_reported_everywhere(void **state)
 {
@@ -361,22 +334,6 @@ static void garbage_is_reported_everywhere(void **state)
             assert_int_equal(report.count, whole.count + 1);
             expect_damage(&report, place, at, at + garbage[g].size, garbage[g].what);
         }
-}
-
-/* Between all events too, where none is followed by another. */
-static void garbage_between_all_events_is_reported(void **state)
-{
-    whole.size = whole.count = 0;
-    for (int i = 0; i < 9; i++) {
-        log_bytes_event(&whole, i, "CHANNEL", "data", 4);
-        log_bytes_add(&whole, "?", 1);
-    }
-    const struct report report = read_bytes(whole.bytes, whole.size);
-    assert_int_equal(report.count, 18);
-    for (size_t i = 0; i < 9; i++) {
-        assert_true(reports_event(&report, whole.begin[i], whole.end[i]));
-        expect_damage(&report, 2 * i + 1, whole.end[i], whole.end[i] + 1, "no event");
-    }
 }
 
 /* ---- Lengths that lie ------------------------------------------------------------------------ */
@@ -816,15 +773,12 @@ static void what_is_no_file_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_empty_file_is_a_log_of_no_events),
         cmocka_unit_test(an_event_is_what_was_written),
         cmocka_unit_test(the_longest_event_is_read),
         cmocka_unit_test(lcm_reads_the_same),
         cmocka_unit_test(every_truncation_is_read_up_to_its_end),
         cmocka_unit_test(every_damaged_byte_is_reported),
-        cmocka_unit_test(every_two_damaged_bytes_are_reported),
         cmocka_unit_test(garbage_is_reported_everywhere),
-        cmocka_unit_test(garbage_between_all_events_is_reported),
         cmocka_unit_test(false_lengths_are_damage),
         cmocka_unit_test(a_log_after_a_truncated_log_is_read),
         cmocka_unit_test(a_log_in_a_message_is_data),
