@@ -87,13 +87,6 @@ outcomes() {
     cmp -n "$(stat -c %s "$cut")" "$log" "$cut"
 }
 
-@test "scenes by handle have the bodies that they name" {
-    generate --blast scenes 40 --by-handle "$log"
-    cuts 0 "$log" -o "$cut" --from 0.001
-    has '.added_bodies == 100'
-    outcomes "$cut" | jq -e '.[1][1] == .[1][0] and .[1][0] > 5'
-}
-
 @test "--channel selects by an expression" {
     generate foreign "$log"
     cuts 0 "$log" -o "$cut"
@@ -117,56 +110,6 @@ outcomes() {
     has '.kept_events == .pair_queries and .added_bodies > 1000'
     outcomes "$cut" | jq -e '.[0][5] == .[0][0]'
     outcomes "$cut" --golden "$log" | jq -e '.[0][1] == .[0][0] and .[0][0] > 1000'
-}
-
-@test "several logs are read as one, and the parts of a log are the whole" {
-    generate clients "$log"
-    split_at "$log" 60
-    cuts 0 "$T/first.log" "$T/second.log" -o "$cut" --from 0.02
-    cuts 0 "$log" -o "$T/same.log" --from 0.02
-    cmp "$cut" "$T/same.log"
-    # What was logged before the first event is there too, also to fmb replay.
-    cuts 0 "$T/second.log" "$T/first.log" -o "$cut" --force
-    has '.kept_events == .events'
-    queries='[.[][0]]'
-    [ "$(outcomes "$T/second.log" "$T/first.log" | jq "$queries")" = "$(outcomes "$log" | jq "$queries")" ]
-    events=0
-    for span in '--to 0.01' '--from 0.01 --to 0.04' '--from 0.04'; do
-        # shellcheck disable=SC2086
-        cuts 0 "$log" -o "$cut" --force $span
-        events=$((events + $(jq .kept_events <<< "$output")))
-    done
-    has ".events == $events"
-}
-
-@test "handles that the logs do not define are counted" {
-    generate --blast pairs 400 --by-handle "$log"
-    split_at "$log" 400
-    cuts 0 "$T/second.log" -o "$cut"
-    has '.unknown_handles > 0 and .kept_events == .events'
-    cuts 0 "$T/first.log" "$T/second.log" -o "$cut" --force
-    has '.unknown_handles == 0'
-}
-
-@test "an event of any size is copied" {
-    generate foreign "$log"
-    # On a channel whose name is one letter.
-    for size in 0 65537 3000000; do
-        printf '\355\241\332\001%s' '' > "$T/event"
-        printf '\0\0\0\0\0\0\0\7\0\6\1\2\3\4\5\6\0\0\0\1' >> "$T/event"
-        # shellcheck disable=SC2059
-        printf "$(printf '\\%03o' $((size >> 24)) $((size >> 16 & 255)) $((size >> 8 & 255)) $((size & 255)))" >> "$T/event"
-        printf 'X' >> "$T/event"
-        head -c "$size" <(yes "$size is so much") >> "$T/event"
-        cat "$T/event" >> "$log"
-    done
-    cuts 0 "$log" -o "$cut" --channel X
-    has '.kept_events == 3 and .kept_bytes == 3065624'
-    tail -c 3000000 "$log" | cmp - <(tail -c 3000000 "$cut")
-    # The number of the event is another one.
-    run cmp <(tail -c 3000029 "$log") <(tail -c 3000029 "$cut")
-    ended 1
-    [[ $output =~ (byte|char)\ 12, ]]
 }
 
 # ---- Damage ----------------------------------------------------------------------------------

@@ -35,11 +35,6 @@ answers() {
     "$FMB" query --local --json "$@" <<< "$output"
 }
 
-# u32 FILE OFFSET
-u32() {
-    od -An -tu1 -j "$2" -N 4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }'
-}
-
 @test "each query of a log is a scene that can be decided, with its command" {
     generate arm "$log"
     scenes=0
@@ -70,22 +65,6 @@ u32() {
         answers --box --point --certificate > "$T/$event.json"
         jq -e '.pairs[0] | has("certificate") and .a != .b and has("contact") == has("point")' "$T/$event.json" > "$T/jq"
     done
-}
-
-@test "a difference in a replay is a difference of the single query" {
-    generate --blast pairs 40 --whole --static --dim 3 --box "$log"
-    cp "$log" "$T/other.log"
-    # Of the last result the verdict: after header, channel, ids, handles, status, empty detail and method.
-    at=$(($(offset_of "$log" 79) + 28 + 15 + 56 + 32 + 4 + 5 + 4))
-    then=$(u32 "$log" "$at")
-    [ "$then" = 1 ] || [ "$then" = 3 ]
-    printf '\0\0\0\2' | dd of="$T/other.log" bs=1 seek="$at" conv=notrunc status=none
-    run "$FMB" replay "$T/other.log"
-    [ "$status" = 1 ]
-    [[ "${lines[0]}" == 'event 78 '*'verdict: touching, now '* ]]
-    now=${lines[0]##*now }
-    scene 0 "$T/other.log" --event 78
-    [ "$(answers | jq -r '.pairs[0].verdict')" = "$now" ]
 }
 
 @test "bodies by handle have their frames, also those that an earlier log defines" {

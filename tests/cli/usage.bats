@@ -110,6 +110,11 @@ replay:--frm 1 LOG
 replay:--golden
 replay:-p a/b LOG
 replay:--bus --frames 9 LOG
+replay:--timeout 1 LOG
+replay:--retries 1 LOG
+replay:--lcm-url udpm://239.255.76.67:7667 LOG
+replay:--bus --timeout 0 LOG
+replay:--bus --retries x LOG
 log cut:LOG
 log cut:-o FILE
 log cut:LOG -o FILE --from -1

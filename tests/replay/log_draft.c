@@ -36,14 +36,20 @@ static void put(struct log_draft *log, uint64_t value, int size)
     log_draft_raw(log, bytes, (size_t) size);
 }
 
+void log_draft_header(struct log_draft *log, int64_t number, int64_t utime, uint32_t channel_length,
+                      uint32_t data_size)
+{
+    put(log, 0xeda1da01, 4);
+    put(log, (uint64_t) number, 8);
+    put(log, (uint64_t) utime, 8);
+    put(log, channel_length, 4);
+    put(log, data_size, 4);
+}
+
 void log_draft_event(struct log_draft *log, const char *channel, int64_t utime, const void *data,
                      size_t size)
 {
-    put(log, 0xeda1da01, 4);
-    put(log, (uint64_t) log->events++, 8);
-    put(log, (uint64_t) utime, 8);
-    put(log, strlen(channel), 4);
-    put(log, size, 4);
+    log_draft_header(log, log->events++, utime, (uint32_t) strlen(channel), (uint32_t) size);
     log_draft_raw(log, channel, strlen(channel));
     log_draft_raw(log, data, size);
 }

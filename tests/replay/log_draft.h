@@ -14,6 +14,9 @@ struct log_draft {
 /* All end the program where there is no memory, or no file. */
 void log_draft_event(struct log_draft *log, const char *channel, int64_t utime, const void *data,
                      size_t size);
+/* A header without data. The lengths that it states need not be true. */
+void log_draft_header(struct log_draft *log, int64_t number, int64_t utime, uint32_t channel_length,
+                      uint32_t data_size);
 /* Any bytes, as they are. */
 void log_draft_raw(struct log_draft *log, const void *bytes, size_t size);
 void log_draft_free(struct log_draft *log);

@@ -349,12 +349,3 @@ event() {
     [ ! -e golden ]
 }
 
-@test "options that exclude each other are refused" {
-    for options in '--bus --frames 5' '--timeout 1' '--retries 1' \
-        '--lcm-url udpm://239.255.76.67:7667' '--bus --timeout 0' \
-        '--bus --retries x'; do
-        run "$FMB" replay $options some.log
-        [ "$status" = 2 ]
-        [[ "$output" == "fmb replay: "* ]]
-    done
-}

@@ -1,7 +1,7 @@
 /* Good logs, every way to break small ones, and logs that would make a reader slow. */
 #include "unit.h"
 
-#include "log_bytes.h"
+#include "log_draft.h"
 #include "log_read.h"
 
 #include <errno.h>
@@ -45,7 +45,7 @@ ssize_t __wrap_pread64(int fd, void *out, size_t count, off_t offset)
 
 /* ---- What is read ---------------------------------------------------------------------------- */
 
-enum { REPORT_MAX = 64 };
+enum { REPORT_MAX = 64, BYTES_MAX = 1 << 22, EVENTS_MAX = 1 << 16 };
 
 /* All that was reported of a small log. */
 struct report {
@@ -56,10 +56,22 @@ struct report {
     } item[REPORT_MAX];
 };
 
+static int descriptor = -1;
+
+/* Returns the path of a file with these bytes, which replaces the one before. */
+static const char *put_file(const void *bytes, size_t size)
+{
+    static char path[LOG_DRAFT_PATH_MAX];
+    if (descriptor >= 0)
+        close(descriptor);
+    descriptor = log_draft_file(bytes, size, path);
+    return path;
+}
+
 static struct log_reader *open_bytes(const void *bytes, size_t size)
 {
     char why[LOG_WHY_MAX];
-    struct log_reader *reader = log_open(log_bytes_file(bytes, size), why);
+    struct log_reader *reader = log_open(put_file(bytes, size), why);
     assert_non_null(reader);
     assert_int_equal(log_size(reader), size);
     return reader;
@@ -128,8 +140,27 @@ static void expect_damage(const struct report *report, size_t i, size_t begin, s
 
 /* ---- Good logs ------------------------------------------------------------------------------- */
 
-static struct log_bytes whole, inner;
+/* A log, and where its good events are. */
+static struct {
+    struct log_draft log;
+    size_t count, begin[EVENTS_MAX], end[EVENTS_MAX];
+} whole;
+static struct log_draft inner;
 static unsigned char noise[3 * LOG_DATA_MAX];
+
+static void clear(void)
+{
+    whole.log.size = whole.count = 0;
+    whole.log.events = 0;
+}
+
+static void add_event(int64_t utime, const char *channel, const void *data, size_t size)
+{
+    assert_true(whole.count < EVENTS_MAX);
+    whole.begin[whole.count] = whole.log.size;
+    log_draft_event(&whole.log, channel, utime, data, size);
+    whole.end[whole.count++] = whole.log.size;
+}
 
 static void make_noise(unsigned seed)
 {
@@ -141,25 +172,25 @@ static void make_noise(unsigned seed)
 /* Five events, of different lengths. */
 static void make_small(void)
 {
-    whole.size = whole.count = 0;
-    log_bytes_event(&whole, 10, "A", "", 0);
-    log_bytes_event(&whole, 20, "CHANNEL", "\xed\xa1\xda\x01, but impossible lengths", 28);
-    log_bytes_event(&whole, 20, "B", "12345", 5);
-    log_bytes_event(&whole, -1, "SOMEWHAT_LONGER", "\xed\xed\xa1\xed\xa1\xda", 6);
-    log_bytes_event(&whole, 30, "C", "\0\0\0", 3);
+    clear();
+    add_event(10, "A", "", 0);
+    add_event(20, "CHANNEL", "\xed\xa1\xda\x01, but impossible lengths", 28);
+    add_event(20, "B", "12345", 5);
+    add_event(-1, "SOMEWHAT_LONGER", "\xed\xed\xa1\xed\xa1\xda", 6);
+    add_event(30, "C", "\0\0\0", 3);
 }
 
 static void an_event_is_what_was_written(void **state)
 {
     struct log_event event;
     struct log_damage damage;
-    whole.size = whole.count = 0;
-    log_bytes_header(&whole, INT64_MIN + 5, -7, 9, 3);
-    log_bytes_add(&whole, "a\0b\n\x1b\xff xy123", 12);
-    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    clear();
+    log_draft_header(&whole.log, INT64_MIN + 5, -7, 9, 3);
+    log_draft_raw(&whole.log, "a\0b\n\x1b\xff xy123", 12);
+    struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
     assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
     assert_int_equal(event.offset, 0);
-    assert_int_equal(event.length, whole.size);
+    assert_int_equal(event.length, whole.log.size);
     assert_int_equal(event.number, INT64_MIN + 5);
     assert_int_equal(event.utime, -7);
     assert_int_equal(event.channel_length, 9);
@@ -178,13 +209,13 @@ static void the_longest_event_is_read(void **state)
     static const int names[] = {1, 63, 64, 65, LOG_CHANNEL_MAX - 1};
     char name[LOG_CHANNEL_MAX] = "";
     make_noise(1);
-    whole.size = whole.count = 0;
+    clear();
     for (int n = 0; n < 5; n++) {
         memset(name, 'a' + n, (size_t) names[n]);
         for (int s = 0; s < 5; s++)
-            log_bytes_event(&whole, s, name, noise, sizes[s]);
+            add_event(s, name, noise, sizes[s]);
     }
-    const struct report report = read_bytes(whole.bytes, whole.size);
+    const struct report report = read_bytes(whole.log.bytes, whole.log.size);
     assert_int_equal(report.count, 25);
     for (size_t i = 0; i < report.count; i++)
         assert_null(report.item[i].damage);
@@ -234,7 +265,7 @@ static void lcm_reads_the_same(void **state)
     struct log_event event;
     struct log_damage damage;
     char why[LOG_WHY_MAX];
-    const char *path = log_bytes_file("", 0);
+    const char *path = put_file("", 0);
     make_noise(2);
     write_with_lcm(path, 1000);
     for (size_t piece = 0; piece < 100000; piece = 5 * piece + 777) {
@@ -262,8 +293,8 @@ static void lcm_reads_the_same(void **state)
 static void every_truncation_is_read_up_to_its_end(void **state)
 {
     make_small();
-    for (size_t size = 0; size < whole.size; size++) {
-        const struct report report = read_bytes(whole.bytes, size);
+    for (size_t size = 0; size < whole.log.size; size++) {
+        const struct report report = read_bytes(whole.log.bytes, size);
         size_t events = 0;
         while (whole.end[events] <= size)
             assert_true(reports_event(&report, whole.begin[events], whole.end[events])), events++;
@@ -292,14 +323,14 @@ static bool is_structure(size_t byte, size_t event)
 static void every_damaged_byte_is_reported(void **state)
 {
     make_small();
-    for (size_t byte = 0; byte < whole.size; byte++)
+    for (size_t byte = 0; byte < whole.log.size; byte++)
         for (int flip = 0; flip < FLIPS; flip++) {
-            whole.bytes[byte] ^= flips[flip];
-            const struct report report = read_bytes(whole.bytes, whole.size);
+            whole.log.bytes[byte] ^= flips[flip];
+            const struct report report = read_bytes(whole.log.bytes, whole.log.size);
             for (size_t i = 0; i < whole.count; i++)
                 assert_true((touches(byte, i) && is_structure(byte, i)) ||
                             reports_event(&report, whole.begin[i], whole.end[i]));
-            whole.bytes[byte] ^= flips[flip];
+            whole.log.bytes[byte] ^= flips[flip];
         }
 }
 
@@ -325,11 +356,11 @@ static void garbage_is_reported_everywhere(void **state)
     make_small();
     for (size_t g = 0; g < kinds; g++)
         for (size_t place = 0; place <= whole.count; place++) {
-            const size_t at = place < whole.count ? whole.begin[place] : whole.size;
+            const size_t at = place < whole.count ? whole.begin[place] : whole.log.size;
             inner.size = 0;
-            log_bytes_add(&inner, whole.bytes, at);
-            log_bytes_add(&inner, garbage[g].bytes, garbage[g].size);
-            log_bytes_add(&inner, whole.bytes + at, whole.size - at);
+            log_draft_raw(&inner, whole.log.bytes, at);
+            log_draft_raw(&inner, garbage[g].bytes, garbage[g].size);
+            log_draft_raw(&inner, whole.log.bytes + at, whole.log.size - at);
             const struct report report = read_bytes(inner.bytes, inner.size);
             assert_int_equal(report.count, whole.count + 1);
             expect_damage(&report, place, at, at + garbage[g].size, garbage[g].what);
@@ -363,13 +394,13 @@ static void false_lengths_are_damage(void **state)
     for (size_t i = 0; i < COUNT(lies); i++)
         for (int last = 0; last < 2; last++) {
             make_small();
-            const size_t at = whole.size, begun = whole.count;
-            log_bytes_header(&whole, 5, 40, lies[i].channel, lies[i].data);
-            log_bytes_add(&whole, "D1234five!", 10);
-            const size_t end = whole.size;
+            const size_t at = whole.log.size, begun = whole.count;
+            log_draft_header(&whole.log, 5, 40, lies[i].channel, lies[i].data);
+            log_draft_raw(&whole.log, "D1234five!", 10);
+            const size_t end = whole.log.size;
             for (int more = 0; !last && more < 3; more++)
-                log_bytes_event(&whole, 50, "E", "data", 4);
-            const struct report report = read_bytes(whole.bytes, whole.size);
+                add_event(50, "E", "data", 4);
+            const struct report report = read_bytes(whole.log.bytes, whole.log.size);
             assert_int_equal(report.count, begun + (last ? 1 : 4));
             expect_damage(&report, begun, at, end, last ? lies[i].what_last : lies[i].what);
         }
@@ -382,8 +413,8 @@ static void a_log_after_a_truncated_log_is_read(void **state)
     make_small();
     for (size_t size = whole.begin[4] + 1; size < whole.end[4]; size++) {
         inner.size = 0;
-        log_bytes_add(&inner, whole.bytes, size);
-        log_bytes_add(&inner, whole.bytes, whole.size);
+        log_draft_raw(&inner, whole.log.bytes, size);
+        log_draft_raw(&inner, whole.log.bytes, whole.log.size);
         const struct report report = read_bytes(inner.bytes, inner.size);
         assert_int_equal(report.count, 10);
         expect_damage(&report, 4, whole.begin[4], size, report.item[4].damage);
@@ -394,19 +425,21 @@ static void a_log_after_a_truncated_log_is_read(void **state)
 static void a_log_in_a_message_is_data(void **state)
 {
     make_small();
-    inner = whole;
-    whole.size = whole.count = 0;
+    const struct log_draft before = inner;
+    inner = whole.log;
+    whole.log = before;
+    clear();
     for (int i = 0; i < 4; i++) {
-        log_bytes_event(&whole, i, "LOGS", inner.bytes, inner.size);
-        log_bytes_event(&whole, i, "OTHERS", "1", 1);
-        log_bytes_event(&whole, i, "LOGS", inner.bytes, inner.size);
+        add_event(i, "LOGS", inner.bytes, inner.size);
+        add_event(i, "OTHERS", "1", 1);
+        add_event(i, "LOGS", inner.bytes, inner.size);
     }
-    struct report report = read_bytes(whole.bytes, whole.size);
+    struct report report = read_bytes(whole.log.bytes, whole.log.size);
     assert_int_equal(report.count, 12);
     for (size_t i = 0; i < 12; i++)
         assert_true(reports_event(&report, whole.begin[i], whole.end[i]));
     for (size_t size = whole.end[9] + 1; size < whole.end[10]; size++) {
-        report = read_bytes(whole.bytes, size);
+        report = read_bytes(whole.log.bytes, size);
         assert_int_equal(report.count, 11);
         expect_damage(&report, 10, whole.begin[10], size, "the last event is cut off");
     }
@@ -421,8 +454,8 @@ static struct log_reader *open_hole(void)
 {
     char why[LOG_WHY_MAX];
     make_small();
-    const char *path = log_bytes_file(whole.bytes, whole.size);
-    if (ftruncate(log_bytes_descriptor(), large) != 0)
+    const char *path = put_file(whole.log.bytes, whole.log.size);
+    if (ftruncate(descriptor, large) != 0)
         skip(); /* no such large files here */
     struct log_reader *reader = log_open(path, why);
     assert_non_null(reader);
@@ -439,8 +472,8 @@ static void expect_hole(struct log_reader *reader)
     for (int i = 0; i < 5; i++)
         assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
     assert_int_equal(log_next(reader, &event, &damage), LOG_DAMAGE);
-    assert_int_equal(damage.offset, whole.size);
-    assert_int_equal(damage.length, large - (off_t) whole.size);
+    assert_int_equal(damage.offset, whole.log.size);
+    assert_int_equal(damage.length, large - (off_t) whole.log.size);
     assert_string_equal(damage.what, "zeros");
     assert_in_range(reads.bytes, 1, 2 << 20);
 }
@@ -451,8 +484,8 @@ static void a_hole_of_ten_gigabytes_is_skipped(void **state)
     struct log_damage damage;
     char why[LOG_WHY_MAX], path[64];
     log_close(open_hole());
-    snprintf(path, sizeof path, "/proc/self/fd/%d", log_bytes_descriptor());
-    assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, large), whole.size);
+    snprintf(path, sizeof path, "/proc/self/fd/%d", descriptor);
+    assert_int_equal(pwrite(descriptor, whole.log.bytes, whole.log.size, large), whole.log.size);
     struct log_reader *reader = log_open(path, why);
     expect_hole(reader);
     for (int i = 0; i < 5; i++) {
@@ -472,8 +505,8 @@ static void a_hole_at_the_end_is_damage(void **state)
     assert_int_equal(log_next(reader, &event, &damage), LOG_END);
     log_close(reader);
     reader = open_hole(); /* also where something is written far after it later */
-    assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, large + (1 << 20)),
-                     whole.size);
+    assert_int_equal(pwrite(descriptor, whole.log.bytes, whole.log.size, large + (1 << 20)),
+                     whole.log.size);
     expect_hole(reader);
     assert_int_equal(log_next(reader, &event, &damage), LOG_END);
     log_close(reader);
@@ -482,38 +515,38 @@ static void a_hole_at_the_end_is_damage(void **state)
 /* A unit again and again, to the largest file here. */
 static void fill_with(void (*unit)(void))
 {
-    whole.size = whole.count = 0;
-    while (whole.size < LOG_BYTES_MAX - 2000)
+    clear();
+    while (whole.log.size < BYTES_MAX - 2000)
         unit();
 }
 
 static void long_lie(void)
 {
-    log_bytes_header(&whole, 0, 0, 1, 1 << 20);
+    log_draft_header(&whole.log, 0, 0, 1, 1 << 20);
 }
 
 static void lies_into_the_buffer(void)
 {
-    log_bytes_header(&whole, 0, 0, 1, 200000);
-    log_bytes_header(&whole, 0, 0, 1, 2);
-    log_bytes_add(&whole, "abc", 3);
+    log_draft_header(&whole.log, 0, 0, 1, 200000);
+    log_draft_header(&whole.log, 0, 0, 1, 2);
+    log_draft_raw(&whole.log, "abc", 3);
 }
 
 static void sync_words(void)
 {
-    log_bytes_add(&whole, "\xed\xa1\xda\x01", 4);
+    log_draft_raw(&whole.log, "\xed\xa1\xda\x01", 4);
 }
 
 static void first_bytes(void)
 {
-    log_bytes_add(&whole, "\xed\xed\xed\xed\xed\xed\xed\xed", 8);
+    log_draft_raw(&whole.log, "\xed\xed\xed\xed\xed\xed\xed\xed", 8);
 }
 
 /* Each possible place is within the header before it. */
 static void nested_headers(void)
 {
-    log_bytes_add(&whole, "\xed\xa1\xda\x01\xed\xa1\xda\x01\0\0\0\1", 12);
-    log_bytes_add(&whole, "\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1", 20);
+    log_draft_raw(&whole.log, "\xed\xa1\xda\x01\xed\xa1\xda\x01\0\0\0\1", 12);
+    log_draft_raw(&whole.log, "\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1", 20);
 }
 
 /* Nothing in it, and it is no hole. */
@@ -521,15 +554,15 @@ static void ones(void)
 {
     static unsigned char bytes[1000];
     memset(bytes, 1, sizeof bytes);
-    if (whole.size == 0)
-        log_bytes_event(&whole, 0, "CHANNEL", "data", 4);
-    log_bytes_add(&whole, bytes, sizeof bytes);
+    if (whole.log.size == 0)
+        add_event(0, "CHANNEL", "data", 4);
+    log_draft_raw(&whole.log, bytes, sizeof bytes);
 }
 
 static void garbage_after(void)
 {
-    log_bytes_header(&whole, 0, 0, 1, 1000);
-    log_bytes_add(&whole, noise, 1002);
+    log_draft_header(&whole.log, 0, 0, 1, 1000);
+    log_draft_raw(&whole.log, noise, 1002);
 }
 
 /* Not much more is read than the file, in calls that are at most as many as there are headers. */
@@ -543,7 +576,7 @@ static void work_grows_only_with_the_size(void **state)
     make_noise(3);
     for (size_t i = 0; i < COUNT(units); i++) {
         fill_with(units[i]);
-        struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+        struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
         memset(&reads, 0, sizeof reads);
         int64_t at = 0;
         for (;;) {
@@ -553,9 +586,9 @@ static void work_grows_only_with_the_size(void **state)
             assert_true(outcome != LOG_FAILED);
             at += outcome == LOG_EVENT ? event.length : damage.length;
         }
-        assert_int_equal(at, whole.size);
-        assert_in_range(reads.bytes, whole.size, 2 * whole.size);
-        assert_in_range(reads.calls, 1, whole.size / 14);
+        assert_int_equal(at, whole.log.size);
+        assert_in_range(reads.bytes, whole.log.size, 2 * whole.log.size);
+        assert_in_range(reads.calls, 1, whole.log.size / 14);
         log_close(reader);
     }
 }
@@ -567,22 +600,22 @@ static void work_grows_only_with_the_size(void **state)
 static void seeking_finds_what_reading_found(void **state)
 {
     make_small();
-    log_bytes_header(&whole, 5, 40, 5, 1000); /* into the next */
-    log_bytes_add(&whole, "D1234five!", 10);
+    log_draft_header(&whole.log, 5, 40, 5, 1000); /* into the next */
+    log_draft_raw(&whole.log, "D1234five!", 10);
     for (int i = 0; i < 5; i++) {
-        log_bytes_event(&whole, i, "CHANNEL", "data", 4);
-        log_bytes_add(&whole, "??\0", (size_t) i % 4);
+        add_event(i, "CHANNEL", "data", 4);
+        log_draft_raw(&whole.log, "??\0", (size_t) i % 4);
     }
-    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
-    const struct report all = read_on(reader, 0, whole.bytes);
-    for (size_t offset = whole.size + 1; offset-- > 0;) {
+    struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
+    const struct report all = read_on(reader, 0, whole.log.bytes);
+    for (size_t offset = whole.log.size + 1; offset-- > 0;) {
         size_t next = 0;
         while (next < all.count &&
                (all.item[next].damage || all.item[next].offset < (int64_t) offset))
             next++;
-        const int64_t at = next < all.count ? all.item[next].offset : (int64_t) whole.size;
+        const int64_t at = next < all.count ? all.item[next].offset : (int64_t) whole.log.size;
         log_seek(reader, (int64_t) offset);
-        const struct report report = read_on(reader, at, whole.bytes);
+        const struct report report = read_on(reader, at, whole.log.bytes);
         assert_int_equal(report.count, all.count - next);
     }
     log_close(reader);
@@ -593,17 +626,17 @@ static void seeking_in_a_log_of_many_buffers(void **state)
     struct log_event event;
     struct log_damage damage;
     make_noise(4);
-    whole.size = whole.count = 0;
-    while (whole.size < LOG_BYTES_MAX - sizeof noise - 100)
-        log_bytes_event(&whole, (int64_t) whole.count, "CHANNEL", noise, draw_size());
-    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    clear();
+    while (whole.log.size < BYTES_MAX - sizeof noise - 100)
+        add_event((int64_t) whole.count, "CHANNEL", noise, draw_size());
+    struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
     for (int i = 0; i < 2000; i++) {
         const size_t index = (size_t) rand() % whole.count;
         log_seek(reader, (int64_t) whole.begin[index]);
         for (size_t n = index; n < index + 3 && n < whole.count; n++) {
             assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
             assert_int_equal(event.offset, whole.begin[n]);
-            check_event(&event, whole.bytes);
+            check_event(&event, whole.log.bytes);
         }
     }
     log_close(reader);
@@ -614,9 +647,9 @@ static void seeking_in_a_log_of_many_buffers(void **state)
 static void what_is_written_later_is_not_read(void **state)
 {
     make_small();
-    struct log_reader *reader = open_bytes(whole.bytes, whole.begin[2]);
-    assert_int_equal(pwrite(log_bytes_descriptor(), whole.bytes, whole.size, 0), whole.size);
-    assert_int_equal(read_on(reader, 0, whole.bytes).count, 2);
+    struct log_reader *reader = open_bytes(whole.log.bytes, whole.begin[2]);
+    assert_int_equal(pwrite(descriptor, whole.log.bytes, whole.log.size, 0), whole.log.size);
+    assert_int_equal(read_on(reader, 0, whole.log.bytes).count, 2);
     log_close(reader);
 }
 
@@ -636,16 +669,16 @@ static void a_file_that_becomes_shorter_ends_reading(void **state)
     struct log_event event;
     struct log_damage damage;
     make_noise(5);
-    whole.size = whole.count = 0;
+    clear();
     for (int i = 0; i < 10; i++)
-        log_bytes_event(&whole, i, "CHANNEL", noise, LOG_DATA_MAX);
-    for (size_t left = 0; left < whole.size; left += 99991) {
-        struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+        add_event(i, "CHANNEL", noise, LOG_DATA_MAX);
+    for (size_t left = 0; left < whole.log.size; left += 99991) {
+        struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
         assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
-        assert_int_equal(ftruncate(log_bytes_descriptor(), (off_t) left), 0);
+        assert_int_equal(ftruncate(descriptor, (off_t) left), 0);
         int events = 1;
         while (events < 10 && log_next(reader, &event, &damage) == LOG_EVENT)
-            check_event(&event, whole.bytes), events++;
+            check_event(&event, whole.log.bytes), events++;
         assert_in_range(events, 1, 9);
         expect_failed(reader, ENODATA);
         log_close(reader);
@@ -656,7 +689,7 @@ static void a_file_that_becomes_shorter_ends_reading(void **state)
 static void change_file(void)
 {
     static const unsigned char lengths[8] = {0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff};
-    assert_int_equal(pwrite(log_bytes_descriptor(), lengths, 8, LOG_HEADER_BYTES - 8), 8);
+    assert_int_equal(pwrite(descriptor, lengths, 8, LOG_HEADER_BYTES - 8), 8);
 }
 
 /* Reads to the end. Lengths are within their limits, whatever the file contains. */
@@ -677,7 +710,7 @@ static void read_changed(struct log_reader *reader)
         at += outcome == LOG_EVENT ? event.length : damage.length;
     }
     assert_int_equal(outcome, LOG_END);
-    assert_int_equal(at, whole.size);
+    assert_int_equal(at, whole.log.size);
 }
 
 /* The header of an event is read into the buffer several times, since the bytes after it are
@@ -686,12 +719,12 @@ static void a_file_may_change_while_it_is_read(void **state)
 {
     static unsigned char image[4 * LOG_DATA_MAX];
     make_noise(5);
-    whole.size = whole.count = 0;
-    log_bytes_event(&whole, 1, "CAMERA", image, sizeof image);
-    log_bytes_add(&whole, "damage", 6);
-    log_bytes_event(&whole, 2, "CHANNEL", noise, 1000);
+    clear();
+    add_event(1, "CAMERA", image, sizeof image);
+    log_draft_raw(&whole.log, "damage", 6);
+    add_event(2, "CHANNEL", noise, 1000);
     for (int64_t call = 0, last = 0; call <= last; call++) {
-        struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+        struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
         reads.calls = 0;
         reads.change_at = call;
         read_changed(reader);
@@ -710,13 +743,13 @@ static void all_data_of_an_event_are_read(void **state)
     struct log_damage damage;
     for (size_t i = 0; i < sizeof image; i++)
         image[i] = (unsigned char) (i * i >> 5);
-    whole.size = whole.count = 0;
-    log_bytes_event(&whole, 1, "CAMERA", image, sizeof image);
-    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    clear();
+    add_event(1, "CAMERA", image, sizeof image);
+    struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
     assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
     assert_true(log_read_data(reader, &event, data));
     assert_memory_equal(data, image, sizeof image);
-    assert_int_equal(ftruncate(log_bytes_descriptor(), (off_t) whole.size - 1), 0);
+    assert_int_equal(ftruncate(descriptor, (off_t) whole.log.size - 1), 0);
     errno = 0;
     assert_false(log_read_data(reader, &event, data));
     assert_int_equal(errno, ENODATA);
@@ -732,7 +765,7 @@ static void a_hole_that_becomes_shorter_ends_reading(void **state)
     struct log_reader *reader = open_hole();
     for (int i = 0; i < 4; i++)
         assert_int_equal(log_next(reader, &event, &damage), LOG_EVENT);
-    assert_int_equal(ftruncate(log_bytes_descriptor(), large / 2), 0);
+    assert_int_equal(ftruncate(descriptor, large / 2), 0);
     expect_failed(reader, ENODATA);
     log_close(reader);
 }
@@ -740,7 +773,7 @@ static void a_hole_that_becomes_shorter_ends_reading(void **state)
 static void a_file_that_cannot_be_read_is_an_error(void **state)
 {
     make_small();
-    struct log_reader *reader = open_bytes(whole.bytes, whole.size);
+    struct log_reader *reader = open_bytes(whole.log.bytes, whole.log.size);
     reads.error = EIO;
     expect_failed(reader, EIO);
     reads.error = 0;
@@ -795,5 +828,8 @@ int main(void)
         cmocka_unit_test(a_file_that_cannot_be_read_is_an_error),
         cmocka_unit_test(what_is_no_file_is_refused),
     };
-    return cmocka_run_group_tests_name("log_read", tests, NULL, NULL);
+    const int failed = cmocka_run_group_tests_name("log_read", tests, NULL, NULL);
+    log_draft_free(&whole.log);
+    log_draft_free(&inner);
+    return failed;
 }
