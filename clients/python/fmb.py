@@ -27,7 +27,8 @@ ValueError, or Error, a ValueError with a status of fmb.h. If the bus fails, or 
 service answers, BusError is raised. A pair that the service could not decide has a status other
 than 0, and no verdict.
 
-Threads may share a scene or a client, and take turns. A child process may use scenes, not clients.
+Threads may share a scene or a client, and take turns. A child process may use scenes, unless another
+thread was using them during the fork, but not clients.
 """
 
 from __future__ import annotations
@@ -42,7 +43,6 @@ import operator
 import os
 import struct
 import threading
-import weakref
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
@@ -60,7 +60,7 @@ __all__ = ["Answer", "Answers", "Body", "BusError", "Client", "Edge", "Error", "
 
 # ---- The libraries: fmb_flat.h, fmb_robot.h, and structs of fmb.h ----
 
-_ABI = 3
+_ABI = 4
 # The installed module names the libraries of its version.
 _SONAME = "libfmb-client.so"
 _ROBOT_SONAME = "libfmb-robot.so"
@@ -98,18 +98,15 @@ _ClientOptions = _struct("fmb_client_options", ("url", _TEXT), ("prefix", _TEXT)
 def _load(soname: str, abi: str, *functions: Any) -> ctypes.CDLL:
     """Loads a library and declares functions: name, result and arguments. abi: of its interface number, or ""."""
     try:
-        library, locked = ctypes.CDLL(soname), ctypes.PyDLL(soname)
+        library = ctypes.CDLL(soname)
     except OSError as error:
         raise ImportError(f"fmb: {error}: install it, or add its folder to LD_LIBRARY_PATH") from None
     found = getattr(library, abi, int)() if abi else _ABI
     if found != _ABI:
         raise ImportError(f"fmb: {soname} has interface {found}, fmb.py needs {_ABI}: install both from one version")
     for name, result, *arguments in functions:
-        # These keep the interpreter locked, so that no other thread forks while some poses are set.
-        held = name in ("fmb_flat_place", "fmb_flat_take", "fmb_robot_place")
-        function = getattr(locked if held else library, name)
+        function = getattr(library, name)
         function.restype, function.argtypes = result, arguments
-        setattr(library, name, function)
     return library
 
 
@@ -158,7 +155,6 @@ _lib = _load(
     ("fmb_flat_cylinder", _REAL, _REAL, _REAL, _INT, _POINTER),
     ("fmb_flat_scene_make", _INT, _SIZE, *5 * (_POINTER,), _SIZE, _POINTER),
     ("fmb_flat_scene_free", None, _POINTER),
-    ("fmb_flat_scene_forked", None, _POINTER),
     ("fmb_flat_placements", ctypes.POINTER(_Placement), _POINTER),
     ("fmb_flat_take", None, _POINTER, _POINTER, _SIZE),
     ("fmb_flat_why", _TEXT, _POINTER),
@@ -227,18 +223,6 @@ class _Handle:
 
     def __reduce_ex__(self, protocol: Any) -> Any:
         raise TypeError(f"fmb: a {type(self).__name__} cannot be copied")
-
-
-_shared: weakref.WeakSet[Any] = weakref.WeakSet()  # scenes and clients: a thread at a time uses one
-
-
-def _in_child() -> None:
-    for user in list(_shared):
-        was_used, user._lock = user._lock.locked(), threading.Lock()
-        user._in_child(was_used)
-
-
-os.register_at_fork(after_in_child=_in_child)
 
 
 # ---- Arguments ----
@@ -538,19 +522,6 @@ def _handles(bodies: Sequence[Body]) -> Any:
     return (ctypes.c_void_p * len(bodies))(*[body._handle for body in bodies])
 
 
-def _maker(make: Any) -> Any:
-    @functools.wraps(make)
-    def checked(*values: Any, **named: Any) -> Body:
-        for name in named.keys() - make.__annotations__:
-            raise TypeError(f"{name}: no argument of {make.__name__}(): {_OF_SCENES}")
-        return make(*values, **named)
-    return checked
-
-
-box, cuboid, tetrahedron, face, hull, sphere, capsule, cylinder, compound = map(
-    _maker, (box, cuboid, tetrahedron, face, hull, sphere, capsule, cylinder, compound))
-
-
 def _bodies(bodies: Iterable[Body]) -> tuple[Body, ...]:
     out = tuple(_iterate("bodies", bodies))
     if not out:
@@ -767,9 +738,8 @@ class Answers(Sequence):
 
 
 class Client(_Handle):
-    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. A fork
-    closes it in the child, which needs its own client. Signals (Ctrl-C) are handled when the
-    current call returns.
+    """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. A child
+    process needs its own client. Signals (Ctrl-C) are handled when the current call returns.
 
     url: of the bus, udpm://[GROUP:PORT][?ttl=N]; None: LCM_DEFAULT_URL, or else only this host
     prefix: of the service's channels
@@ -784,8 +754,7 @@ class Client(_Handle):
 
     def __init__(self, url: Optional[str] = None, prefix: Optional[str] = None, *,
                  timeout: float = 0.5, tries: int = 6, within: float = 0) -> None:
-        self._lock = threading.Lock()
-        _shared.add(self)
+        self._lock, self._process = threading.Lock(), os.getpid()
         why = ctypes.create_string_buffer(_WHY_MAX)
         tries = _int("tries", tries)
         if not 0 < tries < 2**31:
@@ -805,11 +774,6 @@ class Client(_Handle):
             self.__del__()
             self._handle = None
 
-    def _in_child(self, was_used: bool) -> None:
-        if not was_used:  # else its state is unknown: the thread that used it does not exist here
-            self.__del__()
-        self._handle = None
-
     def __enter__(self) -> Client:
         return self
 
@@ -825,12 +789,14 @@ def _lock_of(client: Optional[Client]) -> Any:
         return _NO_LOCK
     if not isinstance(client, Client):
         raise TypeError(f"client: expected a Client, found {client!r:.40}")
+    if client._process != os.getpid():  # both would take the answers to each other's queries
+        raise BusError("client: it was opened by another process: open one after a fork")
     return client._lock
 
 
 def _handle_of(client: Optional[Client]) -> Optional[int]:
     if client is not None and not client._handle:
-        raise BusError("client: it is closed, or was opened by another process: open one after a fork")
+        raise BusError("client: it is closed")
     return client and client._handle
 
 
@@ -888,7 +854,6 @@ class Scene(_Handle):
                  names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
                  ids: Optional[Array] = None, ignored: Optional[Array] = None) -> None:
         self._lock = threading.Lock()
-        _shared.add(self)
         self.bodies = _bodies(bodies)
         self.dim = self.bodies[0].dim
         n = len(self.bodies)
@@ -926,10 +891,6 @@ class Scene(_Handle):
             raise Error(f"{path}: \"pairs\" is not supported in a file: pass pairs to decide()")
         links = [link and link.decode() for link in world.links[:of.placement_count]] if world.links else ()
         return _scene_of(of, made, [], duration=of.duration, **{"links": tuple(links)} if links else {})
-
-    def _in_child(self, was_used: bool) -> None:
-        if was_used:
-            _lib.fmb_flat_scene_forked(self._handle)
 
     def __len__(self) -> int:
         return len(self.bodies)

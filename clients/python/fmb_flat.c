@@ -230,14 +230,6 @@ void fmb_flat_scene_free(struct fmb_flat_scene *scene)
     free(scene);
 }
 
-void fmb_flat_scene_forked(struct fmb_flat_scene *scene)
-{
-    scene->listed = scene->ignored = scene->memory = (struct column){0};
-    scene->state = NULL;
-    memset(scene->column, 0, sizeof scene->column);
-    scene->count = 0;
-}
-
 const char *fmb_flat_why(const struct fmb_flat_scene *scene)
 {
     return scene->why;

@@ -24,7 +24,7 @@ extern "C" {
 
 /* The number of this interface. It is raised when a function changes or is removed. fmb_flat_abi()
  * returns the number of the library. */
-enum { FMB_FLAT_ABI = 3 };
+enum { FMB_FLAT_ABI = 4 };
 int fmb_flat_abi(void);
 
 /* ---- Bodies ---- */
@@ -78,11 +78,6 @@ const struct fmb_placement *fmb_flat_placements(const struct fmb_flat_scene *sce
  * scene. They must be valid. */
 void fmb_flat_take(struct fmb_flat_scene *scene, const struct fmb_placement *placements,
                    size_t count);
-
-/* In a child process after a fork during which another thread was using the scene: makes the scene
- * usable, without answers. If the thread was in fmb_flat_place() or fmb_flat_take(), the poses of
- * these placements have to be set again. Memory that the thread was using is not freed. */
-void fmb_flat_scene_forked(struct fmb_flat_scene *scene);
 
 /* Returns what was wrong in the last call that failed: "positions[3]: not a finite number". */
 const char *fmb_flat_why(const struct fmb_flat_scene *scene);
