@@ -124,10 +124,17 @@ static void write_word(FILE *out, const char *word)
     putc('\'', out);
 }
 
+static void write_option(FILE *out, const char *option, const char *word)
+{
+    fprintf(out, " --%s", option);
+    write_word(out, word);
+}
+
 static void write_command(const struct path_run *run, FILE *out)
 {
     const struct robot_run_options *options = run->options;
     const struct robot *tree = &run->run.robot->tree;
+    const double *base = options->robot.base;
     char number[NUMBER_TEXT_MAX], *values, word[2 * QUERY_NAME_MAX + 16];
     size_t size;
     fputs("fmb scene", out);
@@ -143,28 +150,18 @@ static void write_command(const struct path_run *run, FILE *out)
     fclose(list);
     write_word(out, values);
     free(values);
-    for (size_t i = 0; i < options->world_count; i++) {
-        fputs(" --with", out);
-        write_word(out, options->world[i]);
-    }
+    for (size_t i = 0; i < options->world_count; i++)
+        write_option(out, "with", options->world[i]);
     for (size_t i = 0; i < options->ignored_count; i++) {
-        fputs(" --ignore", out);
         snprintf(word, sizeof word, "%s,%s", options->ignored[i][0], options->ignored[i][1]);
-        write_word(out, word);
+        write_option(out, "ignore", word);
     }
-    const char *const names[] = {" --srdf", " --package-path"};
-    const char *const texts[] = {options->robot.srdf, options->robot.package_path};
-    for (int i = 0; i < 2; i++)
-        if (texts[i]) {
-            fputs(names[i], out);
-            write_word(out, texts[i]);
-        }
-    bool based = false;
-    for (int i = 0; i < 6; i++)
-        based = based || options->robot.base[i] != 0;
-    for (int i = 0; i < 6 && based; i++)
-        fprintf(out, "%s%s", i == 0 ? " --base=" : ",",
-                number_exact(options->robot.base[i], number));
+    if (options->robot.srdf)
+        write_option(out, "srdf", options->robot.srdf);
+    if (options->robot.package_path)
+        write_option(out, "package-path", options->robot.package_path);
+    for (int i = 0; i < 6 && memcmp(base, (double[6]){0}, 6 * sizeof *base) != 0; i++)
+        fprintf(out, "%s%s", i == 0 ? " --base=" : ",", number_exact(base[i], number));
     if (options->sides != ENCLOSURE_SIDES)
         fprintf(out, " --sides %ld", options->sides);
     if (options->robot.excess > 0)

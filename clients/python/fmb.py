@@ -970,7 +970,7 @@ class Scene(_Handle):
         label: for monitoring the bus, at most 64 bytes of UTF-8 without control characters
         client: decides the pairs; None: in process
 
-        A list of pairs is fastest per pair, above all without a margin and with bodies of one frame.
+        A list of pairs is fastest per pair.
         """
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
             _WANT_POINT if points else 0) + (_WANT_GAP if gaps else 0)

@@ -1,7 +1,6 @@
 #include "fmb_flat.h"
 
 #include "enclosure.h"
-#include "fmb_batch.h"
 #include "fmb_client.h"
 #include "frame_numbers.h"
 #include "geometry.h"
@@ -100,10 +99,8 @@ static const size_t column_width[COLUMN_COUNT] = {
 struct fmb_flat_scene {
     size_t placement_count;
     int dim;
-    bool single; /* each body has one frame */
     struct fmb_placement *placements;
     char *names;
-    struct fmb_prepared *prepared;
     /* unsigned [][2]: indices of placements. own: the ignored pairs of fmb_flat_scene_make(). */
     struct column listed, ignored, own;
     size_t own_count;
@@ -158,7 +155,6 @@ static int fill_scene(struct fmb_flat_scene *scene, const struct fmb_body *const
             return refuse(scene, FMB_DIMENSIONS_DIFFER, "bodies", i);
         if (!query_id_ok(ids[i]))
             return refuse(scene, FMB_BAD_ID, "ids", i);
-        scene->single = scene->single && placement->body->frame_count == 1;
         if (!names[i])
             continue;
         if (!query_name_ok(names[i]))
@@ -202,11 +198,9 @@ int fmb_flat_scene_make(size_t count, const struct fmb_body *const *bodies, cons
         bytes += names[i] ? strlen(names[i]) + 1 : 0;
     scene->placement_count = count;
     scene->dim = bodies[0]->dim;
-    scene->single = true;
     scene->placements = calloc(count, sizeof *scene->placements);
-    scene->prepared = aligned_alloc(64, count * sizeof *scene->prepared);
     scene->names = malloc(bytes);
-    if (!scene->placements || !scene->prepared || !scene->names)
+    if (!scene->placements || !scene->names)
         return refuse(scene, FMB_CLIENT_NO_MEMORY, NULL, 0);
     const int status = fill_scene(scene, bodies, ids, groups, names);
     scene->own_count = ignored_count;
@@ -219,7 +213,6 @@ void fmb_flat_scene_free(struct fmb_flat_scene *scene)
     if (!scene)
         return;
     free(scene->placements);
-    free(scene->prepared);
     free(scene->names);
     free(scene->listed.data);
     free(scene->ignored.data);
@@ -372,32 +365,6 @@ static void add_rows(struct fmb_flat_scene *scene, const void *const from[COLUMN
             memcpy((char *) scene->column[c].data + scene->count * column_width[c], from[c],
                    count * column_width[c]);
     scene->count += count;
-}
-
-static void *column_if(struct fmb_flat_scene *scene, int column)
-{
-    return scene->has[column] ? scene->column[column].data : NULL;
-}
-
-/* Decides listed pairs of bodies of one frame, without a margin. scene: checked. */
-static int decide_batch(struct fmb_flat_scene *flat, const struct fmb_scene *scene)
-{
-    if (!reserve_answers(flat, scene->pair_count))
-        return FMB_CLIENT_NO_MEMORY;
-    for (size_t i = 0; i < flat->placement_count; i++)
-        fmb_prepare(&flat->placements[i], 0, 1, &flat->prepared[i]);
-    flat->count = scene->pair_count;
-    return (int) fmb_decide_batch(&(struct fmb_batch){.frames = flat->prepared,
-                                                      .frame_count = flat->placement_count,
-                                                      .pairs = scene->pairs,
-                                                      .pair_count = scene->pair_count,
-                                                      .duration = scene->duration,
-                                                      .instant = scene->instant,
-                                                      .verdicts = column_if(flat, VERDICTS),
-                                                      .contacts = column_if(flat, CONTACTS),
-                                                      .boxes = column_if(flat, BOXES),
-                                                      .points = column_if(flat, POINTS),
-                                                      .gaps = column_if(flat, GAPS)});
 }
 
 /* Whether the scene was decided last, and differs at most in its first placements. */
@@ -571,8 +538,7 @@ int fmb_flat_decide(struct fmb_flat_scene *flat, struct fmb_client *client, doub
     if (!is_again(flat, &scene)) /* fmb_scene_again() checks what moved */
         status = (int) fmb_scene_check(&scene, flat->why, sizeof flat->why);
     if (status == FMB_OK) {
-        status = pairs && flat->single && margin == 0 ? decide_batch(flat, &scene)
-                                                      : decide_steps(flat, &scene);
+        status = decide_steps(flat, &scene);
         if (status != FMB_OK)
             refuse(flat, status, NULL, 0);
     }

@@ -214,51 +214,19 @@ EOF
     link "<collision><geometry><mesh filename='m.dae' scale='1 1 2'/></geometry></collision>"
 }
 
-@test "COLLADA gives the same scene as STL of its placed triangles; its unit is applied and reported, its up axis is not applied" {
-    unit="; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: 0.25 m in m.dae, files: 1"
-    for placed in '<node><instance_geometry url="#g"/></node>||0 0 0,1 0 0,0 1 0,0 0 1' \
-        '<node><instance_geometry url="#g"/></node>|<unit meter="0.25" name="q"/>|0 0 0,0.25 0 0,0 0.25 0,0 0 0.25' \
-        '<node><translate>1 2 3</translate><node><rotate>0 0 1 90</rotate><rotate>1 0 0 -90</rotate><instance_geometry url="#g"/></node></node>||1 2 3,1 3 3,1 2 2,0 2 3' \
-        '<node><matrix>0 0 1 0.5 1 0 0 0.25 0 1 0 0 0 0 0 1</matrix><node><translate>4 0 0</translate><instance_node url="#half"/></node></node>|<unit meter="0.25"/>|0.125 1.0625 0,0.125 1.1875 0,0.125 1.0625 0.125,0.25 1.0625 0'; do
-        IFS='|' read -r nodes asset corners <<< "$placed"
-        collada "$nodes" "$asset"
-        scene robot.urdf
-        ended 0
-        if [ "$asset" ]; then says "$unit"; else [[ $stderr != *unit* ]]; fi
-        dae=$output
-        IFS=, read -ra corner <<< "$corners"
-        {
-            echo solid
-            for face in '0 1 2' '0 1 3' '0 1 2' '0 2 3'; do
-                echo 'facet normal 0 0 0 outer loop'
-                for c in $face; do echo "vertex ${corner[c]}"; done
-                echo endloop endfacet
-            done
-            echo endsolid
-        } > m.stl
-        sed -i 's/m\.dae/m.stl/' robot.urdf
-        scene robot.urdf
-        [[ $stderr != *unit* ]]
-        ended 0
-        is "$dae"
-        shows '.bodies[0].vertices | length'
-        is 4
-    done
-    sed -i 's/m\.stl/m.dae/' robot.urdf
+@test "the unit of COLLADA is applied and reported, its up axis is not applied" {
+    collada '<node><instance_geometry url="#g"/></node>'
+    scene robot.urdf
+    [[ $stderr != *unit* ]]
+    shows '.bodies[0].vertices'
+    is '[[0,0,0],[1,0,0],[0,1,0],[0,0,2]]'
+    collada '<node><translate>4 0 0</translate><instance_node url="#half"/></node>' '<unit meter="0.25" name="q"/>'
+    scene robot.urdf
+    says '; the <unit> of COLLADA is applied, as in RViz and Gazebo, but not in MoveIt: 0.25 m in m.dae, files: 1'
+    shows '.bodies[0].vertices'
+    is '[[1,0,0],[1.125,0,0],[1,0.125,0],[1,0,0.25]]'
     sed -i 's/<p>.*<\/p>/<p\/>/; s/ count="[21]"/ count="0"/; s/<vcount>4/<vcount>/' m.dae
     refused "line 3: link 'a': m.dae: the mesh has no faces" robot.urdf
-}
-
-@test "faces of an OBJ may be polygons" {
-    # A prism of five sides, whose last corner only its polygons have; (1,1,1) is in no face.
-    printf 'v %s\n' '0 0 0' '4 0 0' '5 3 0' '2 5 0' '-1 3 0' '1 1 1' '0 0 2' '4 0 2' '5 3 2' '2 5 2' '-1 3 2' > m.obj
-    printf 'f %s\n' '1 2 3 4 5' '7 8 9 10 11' >> m.obj
-    link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
-    scene robot.urdf
-    shows '.bodies[0].vertices'
-    is '[[0,0,0],[4,0,0],[5,3,0],[2,5,0],[-1,3,0],[0,0,2],[4,0,2],[5,3,2],[2,5,2],[-1,3,2]]'
-    echo 'f 1 2' >> m.obj
-    refused 'line 14: a face of 2 vertices: remove it first' robot.urdf
 }
 
 # 256 MB suffice.
@@ -269,27 +237,6 @@ EOF
     output=$(< output.txt) status=0
     shows '.bodies[0].vertices | length'
     is 3
-}
-
-# 20,000 triangles around a cylinder, in rings, and in its ends; 100 sides.
-@test "an STL of 20,000 triangles loads" {
-    awk 'BEGIN {
-        print "solid"
-        for (i = 0; i < 100; i++) for (j = 0; j < 100; j++) for (k = 0; k < 2; k++) {
-            print "facet normal 0 0 0\nouter loop"
-            for (c = 0; c < 3; c++) {
-                a = ((i + (c > k)) % 100) * 0.06283185307179586; z = j + (k ? c > 0 : c > 1)
-                printf "vertex %.9g %.9g %g\n", cos(a) * (1 - z * (100 - z) / 9000), sin(a) * (1 - z * (100 - z) / 9000), z
-            }
-            print "endloop\nendfacet"
-        }
-        print "endsolid"
-    }' > m.stl
-    [ "$(grep -c facet m.stl)" = 40000 ]
-    link "<collision><geometry><mesh filename='m.stl'/></geometry></collision>"
-    scene robot.urdf
-    shows '.bodies[0].vertices | length'
-    is 200
 }
 
 # sphere VERTICES: writes m.obj, of points at 1 or less from (1, 2, 3), all of them vertices of the hull, and a robot of it.
@@ -304,64 +251,16 @@ sphere() {
     link "<collision><geometry><mesh filename='m.obj'/></geometry></collision>"
 }
 
-# Proves in rational numbers that each vertex of m.obj is within the radius of a point of a hull in output.txt, a
-# weighted mean of its vertices, of which each is one of m.obj. Prints the number of vertices, and how far the farthest
-# one is, as a part of the radius.
-prove_cover() {
-    /usr/bin/python3 - << 'EOF'
-import itertools, json, numpy
-from fractions import Fraction
-
-points = [[float(x) for x in line.split()[1:]] for line in open("m.obj") if line[0] == "v"]
-body = json.load(open("output.txt"))["bodies"][0]
-vertices, radius = body["vertices"], Fraction(body["radius"])
-assert all(v in points for v in vertices)
-V = numpy.array(vertices)
-most = 0
-
-def simplices(near):
-    """Weights of the points in the planes of corners, lines of edges, and vertices, that are nearest to p."""
-    for k in (1, 2, 3):
-        index = numpy.array(list(itertools.combinations(near, k)))
-        origin, edges = V[index[:, 0]], V[index[:, 1:]] - V[index[:, :1]]
-        if k == 1:
-            yield index, numpy.ones((len(index), 1))
-            continue
-        gram = edges @ edges.transpose(0, 2, 1) + 1e-30 * numpy.eye(k - 1)
-        t = numpy.linalg.solve(gram, (edges @ (p - origin)[:, :, None]))[:, :, 0]
-        yield index, numpy.hstack([1 - t.sum(axis=1, keepdims=True), t])
-
-for point in points:
-    p, best = numpy.array(point), None
-    near = numpy.argsort(((V - p) ** 2).sum(axis=1))[:7]
-    for index, weight in simplices(near):
-        error = ((numpy.einsum("ij,ijk->ik", weight, V[index]) - p) ** 2).sum(axis=1)
-        error[(weight < 0).any(axis=1)] = numpy.inf
-        i = error.argmin()
-        if best is None or error[i] < best[0]:
-            best = error[i], index[i], weight[i]
-    weight = [Fraction(w) for w in best[2]]
-    mean = [sum(w * Fraction(vertices[i][axis]) for w, i in zip(weight, best[1])) / sum(weight) for axis in range(3)]
-    square = sum((Fraction(x) - m) ** 2 for x, m in zip(point, mean))
-    assert square <= radius ** 2, point
-    most = max(most, square / radius ** 2)
-print(len(vertices), "%.6f" % float(most) ** 0.5)
-EOF
-}
-
-@test "a hull of too many vertices gets fewer and a radius, with which it contains all points; the radius is no larger than needed" {
-    /usr/bin/python3 -c 'import numpy' 2> /dev/null || skip "needs python3-numpy"
+@test "a hull of too many vertices gets fewer and a radius, which is reported" {
     sphere 3000
     scene robot.urdf
-    ended 0
     says '; hulls extend beyond what they enclose by at most 0.0037'
-    echo "$output" > output.txt
-    run prove_cover
-    is '1024 1.000000'
+    shows '.bodies[0] | (.vertices | length), .radius > 0.0037 and .radius < 0.0038'
+    is $'1024\ntrue'
     # A mesh that is placed within its link, and a mesh of two objects.
     sed -i "s|<collision>|$box<collision><origin xyz='0 0 1' rpy='0 0 1'/>|" robot.urdf
     scene robot.urdf
-    shows '.bodies[0].frames[1] | (.vertices | length), .radius < 0.004'
+    shows '.bodies[0].frames[1] | (.vertices | length), .radius > 0.0037 and .radius < 0.0038'
     is $'1024\ntrue'
     { grep -v f m.obj; echo 'o a'; grep '^f' m.obj; echo 'o b'; grep '^f' m.obj; } > n.obj
     mv n.obj m.obj
@@ -384,23 +283,17 @@ EOF
 }
 
 @test "--excess bounds how far a hull extends beyond its mesh, and saves vertices" {
-    /usr/bin/python3 -c 'import numpy' 2> /dev/null || skip "needs python3-numpy"
     sphere 500
     scene robot.urdf
     [[ $stderr != *extend* ]]
     shows '.bodies[0] | (.vertices | length), .radius'
     is $'500\nnull'
-    before=1000
+    before=500
     for excess in 0.02 0.1 0.5; do
         scene robot.urdf --excess "$excess"
-        shows ".bodies[0] | .radius > 0 and .radius <= $excess"
-        is true
-        scene robot.urdf --excess "$excess"
-        echo "$output" > output.txt
-        run prove_cover
-        [ "${output% *}" -lt "$before" ]
-        before=${output% *}
-        [ "${output#* }" = 1.000000 ]
+        shows ".bodies[0] | .radius > 0 and .radius <= $excess, (.vertices | length)"
+        [ "${output%$'\n'*}" = true ] && [ "${output#*$'\n'}" -lt "$before" ]
+        before=${output#*$'\n'}
     done
     scene robot.urdf --excess 5
     shows '.bodies[0].frames | map([.shape, .radius < 2])'
@@ -1187,7 +1080,7 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     limited
 }
 
-@test "COLLADA files cannot expand entities, repeat nodes without limit, or take a gigabyte" {
+@test "COLLADA files cannot repeat nodes without limit, or take a gigabyte" {
     # limited TEXT: m.dae is refused, within 5 s and 512 MB.
     limited() {
         # shellcheck disable=SC2016
@@ -1196,10 +1089,6 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
         is ''
         said "fmb: robot.urdf: line 3: link 'a': m.dae: $1"
     }
-    collada '<node id="n"><node><instance_node url="#n"/></node></node>'
-    limited 'line 12: <node>: the node contains an instance of itself'
-    collada '<node><instance_node url="#none"/></node>'
-    limited 'line 12: <instance_node>: its url is not the id of one <node> in this file'
     nodes='<node id="none"/>' last=none
     for n in n2 n3 n4 n5 n6 n7 n8 n9; do
         nodes+="<node id='$n'>$(printf "<instance_node url='#$last'/>%.0s" 1 2 3 4 5 6 7 8 9 10)</node>"
@@ -1207,8 +1096,6 @@ fmb: robot.urdf: line 5: link 'b': c.dae: No such file or directory"
     done
     collada "$nodes<node><instance_node url='#n9'/></node>"
     limited 'line 12: more than 512 MB, with all instances'
-    sed -i '1a <!DOCTYPE COLLADA [<!ENTITY e "0 0 0 0 0 0">]>' m.dae
-    limited 'line 2: <!DOCTYPE>: document types and entities are not supported: remove the declaration'
     truncate -s 1G m.dae
     limited 'there is no memory for its 1073741824 bytes'
     truncate -s 257M m.dae

@@ -198,14 +198,6 @@ class Answers(unittest.TestCase):
             self.assertEqual([as_json(a) for a in answers], [of_json(pair) for pair in expected])
             self.assertEqual([list(a.names) for a in answers], [pair["names"] for pair in expected])
             seen.update(a.verdict for a in answers)
-            # The batch, which takes bodies of one frame only.
-            single = [i for i, body in enumerate(json_scene["bodies"]) if len(body["frames"]) == 1]
-            part, _ = scene_of(dict(json_scene, bodies=[json_scene["bodies"][i] for i in single]))
-            listed = list(itertools.combinations(range(len(single)), 2))
-            of_part = part.decide(0.7, pairs=listed, client=self.client, **WANTED)
-            by_pair = dict(zip(pairs, answers))
-            self.assertEqual([as_json(a) for a in of_part],
-                             [as_json(by_pair[single[a], single[b]]) for a, b in listed])
         self.assertEqual(seen, {fmb.SEPARATED, fmb.OVERLAPPING})
 
     def test_each_part_is_the_same_whatever_else_is_wanted(self):
@@ -466,12 +458,11 @@ class Arrays(unittest.TestCase):
         self.assertEqual([math.isnan(x) for x in apart[0]], [True] * 4)
         self.assertEqual(apart[1], [0, 0.25, 0, 0])
         self.scene.place(velocities=[[0, 0, 0], [0, 0, 0], [-4, -2, 0]])
-        for margin in 0, 1:  # a list without a margin is a batch
-            answers = self.scene.decide(0.5, pairs=[[2, 0], [0, 1], [2, 1]], points=True, margin=margin)
-            self.assertEqual(answers[1].point, (0, (0.25, 0, 0)))
-            time, (x, y, z) = answers[2].point  # the third cube passes the second one
-            self.assertEqual(answers.points.tolist()[2], [time, x, y, z])
-            self.assertTrue(0.375 <= time <= 0.5 and 0 <= x <= 1 and abs(y) <= 0.5 and abs(z) <= 0.5)
+        answers = self.scene.decide(0.5, pairs=[[2, 0], [0, 1], [2, 1]], points=True)
+        self.assertEqual(answers[1].point, (0, (0.25, 0, 0)))
+        time, (x, y, z) = answers[2].point  # the third cube passes the second one
+        self.assertEqual(answers.points.tolist()[2], [time, x, y, z])
+        self.assertTrue(0.375 <= time <= 0.5 and 0 <= x <= 1 and abs(y) <= 0.5 and abs(z) <= 0.5)
 
     def test_answers_outlive_the_next_call(self):
         first = self.scene.decide(0, contacts=True)

@@ -339,36 +339,6 @@ static void right_angles_are_exact(void **state)
         }
 }
 
-static void other_angles_are_near(void **state)
-{
-    struct draw draw;
-    const double pi = acos(-1);
-    draw_begin(&draw, "other_angles_are_near");
-    for (long n = draw_sample(20000); n > 0; n--) {
-        const double degrees = n % 2 ? draw_uniform(&draw, -720, 720) : draw_int(&draw, -300, 300);
-        const double p[3] = {draw_uniform(&draw, -1, 1), draw_uniform(&draw, -1, 1), 5};
-        const struct mesh_step step = {MESH_ROTATE, 2, {degrees}};
-        const double c = cos(degrees / 180 * pi), s = sin(degrees / 180 * pi);
-        double at[3];
-        assert_true(put(&step, 1, p, at) == SIZE_MAX);
-        assert_true(fabs(at[0] - (c * p[0] - s * p[1])) < 1e-14);
-        assert_true(fabs(at[1] - (s * p[0] + c * p[1])) < 1e-14);
-        assert_true(at[2] == 5);
-    }
-}
-
-static void steps_follow_each_other(void **state)
-{
-    static const double p[3] = {1, 2, 3};
-    const struct mesh_step turn = {MESH_ROTATE, 2, {90}}, way = {MESH_TRANSLATE, 0, {10, 0, 0.5}};
-    const struct mesh_step twice = {MESH_SCALE, 0, {2, 3, -1}};
-    assert_put(NULL, 0, p, 1, 2, 3);
-    assert_put((struct mesh_step[]){turn, way}, 2, p, 8, 1, 3.5);
-    assert_put((struct mesh_step[]){way, turn}, 2, p, -2, 11, 3.5);
-    assert_put((struct mesh_step[]){twice, way}, 2, p, 12, 6, -2.5);
-    assert_put((struct mesh_step[]){way, twice}, 2, p, 22, 6, -3.5);
-}
-
 /* Each coordinate is rounded once in a translation, and in a scale. */
 static void steps_round_once(void **state)
 {
@@ -419,8 +389,6 @@ int main(void)
         cmocka_unit_test(faces_of_every_size_meet),
         cmocka_unit_test(empty_meshes_meet_nothing),
         cmocka_unit_test(right_angles_are_exact),
-        cmocka_unit_test(other_angles_are_near),
-        cmocka_unit_test(steps_follow_each_other),
         cmocka_unit_test(steps_round_once),
         cmocka_unit_test(what_goes_too_far_is_reported),
     };

@@ -239,13 +239,15 @@ static void ply_of_bytes_is_read(void **state)
                                                    {-2147483648., 2147483647.},
                                                    {0, 4294967295.},
                                                    {-0.1f, 0x1p-149},
-                                                   {-0.1, 0x1p-1074}};
+                                                   {-0x1.fffffffffffffp1023, 0x1p-1074}};
     struct file *file = malloc(sizeof *file);
     for (int mix = 0; mix < TYPE_COUNT * TYPE_COUNT * TYPE_COUNT * 4; mix++) {
         const int coordinate = mix / 4 % TYPE_COUNT, count = mix / 32 % TYPE_COUNT;
         const int index = mix / 256;
         const double *extreme = extremes[coordinate];
-        const double vertex[3][3] = {{extreme[0], 1, extreme[1]}, {0, extreme[1], 2}, {100, 0, 0}};
+        const double zero = coordinate >= FLOAT ? -0.0 : 0;
+        const double vertex[3][3] = {
+            {extreme[0], 1, extreme[1]}, {0, extreme[1], 2}, {100, zero, 0}};
         make_binary(file, coordinate, count, index, mix & 1, mix & 2, vertex);
         expect_mesh(read_good(file->bytes, file->size, ""), 3, vertex, 1, face);
     }
@@ -364,15 +366,19 @@ static void bad_ply_bodies_are_refused(void **state)
                    "line 6");
 }
 
-static void polygons_of_ply_are_read(void **state)
+static void polygons_are_read(void **state)
 {
-    static const char text[] = VERTICES("ascii", "4") FACES("2") "0 0 0\n1 0 0.1\n0 1 -1e-3\n"
-                                                                 "1 1 5e22\n4 0 1 3 2\n3 3 2 1\n";
+    static const char *const texts[] = {
+        VERTICES("ascii", "4") FACES("2") "0 0 0\n1 0 0.1\n0 1 -1e-3\n1 1 5e22\n4 0 1 3 2\n"
+                                          "3 3 2 1\n",
+        "v 0 0 0\nv 1 0 0.1\nv 0 1 -1e-3\nv 1 1 5e22\nf 1 2 4 3\nf 4 3 2\n"};
     static const unsigned fans[][3] = {{0, 1, 3}, {0, 3, 2}, {3, 2, 1}};
     char error[MESH_ERROR_MAX];
     struct mesh mesh;
-    assert_true(mesh_parse(text, sizeof text - 1, "", MESH_POLYGONS, &mesh, error));
-    expect_mesh(mesh, 4, square, 3, fans);
+    for (size_t i = 0; i < COUNT(texts); i++) {
+        assert_true(mesh_parse(texts[i], strlen(texts[i]), "", MESH_POLYGONS, &mesh, error));
+        expect_mesh(mesh, 4, square, 3, fans);
+    }
 }
 
 static void expect_refused_bytes(const char *header, const char *bytes, size_t size,
@@ -957,21 +963,6 @@ static struct mesh read_back(const struct mesh *mesh,
     return again;
 }
 
-/* Each edge has just one face on each of its sides. */
-static void expect_closed(const struct mesh *mesh)
-{
-    const size_t n = mesh->vertex_count;
-    unsigned char *edges = calloc(n * n, 1);
-    assert_non_null(edges);
-    for (size_t i = 0; i < mesh->face_count; i++)
-        for (int corner = 0; corner < 3; corner++)
-            edges[mesh->face[i][corner] * n + mesh->face[i][(corner + 1) % 3]]++;
-    for (size_t from = 0; from < n; from++)
-        for (size_t to = 0; to < n; to++)
-            assert_true(edges[from * n + to] == edges[to * n + from] && edges[from * n + to] <= 1);
-    free(edges);
-}
-
 /* STL has vertices in another order; what the corners are is the same, but for floats. */
 static void expect_same_corners(const struct mesh *a, const struct mesh *b, double most)
 {
@@ -990,7 +981,6 @@ static void all_formats_are_the_same_mesh(void **state)
     for (int made = 0; made < 3; made++) {
         struct mesh mesh;
         bumpy_make(counts[made], (uint64_t) made, &mesh);
-        expect_closed(&mesh);
         for (size_t i = 0; i < FORMAT_COUNT; i++) {
             struct mesh again = read_back(&mesh, formats[i].write);
             if (strncmp(formats[i].name, "stl", 3) != 0)
@@ -998,27 +988,9 @@ static void all_formats_are_the_same_mesh(void **state)
             /* A float is nearer than half of its last bit: 2^-24 of 2 at most. */
             expect_same_corners(&mesh, &again,
                                 strcmp(formats[i].name, "stl-binary") == 0 ? 0x1p-23 : 0);
-            expect_closed(&again);
             mesh_free(&again);
         }
         mesh_free(&mesh);
-    }
-}
-
-/* From binary PLY, in both byte orders. */
-static void extremes_are_read(void **state)
-{
-    static double vertex[][3] = {{-0.0, 0x1p-1074, -0x1.fffffffffffffp1023}, {0.1, 1e22, 0}};
-    static unsigned face[][3] = {{0, 1, 0}, {1, 1, 1}};
-    for (size_t i = 1; i < 3; i++) {
-        struct mesh mesh = {.vertex_count = 2, .face_count = 2, .vertex = vertex, .face = face};
-        assert_memory_equal(formats[i].name, "ply-", 4);
-        expect_mesh(read_back(&mesh, formats[i].write), 2, (const double(*)[3]) vertex, 2,
-                    (const unsigned(*)[3]) face);
-        mesh.face_count = 0;
-        expect_mesh(read_back(&mesh, formats[i].write), 2, (const double(*)[3]) vertex, 0, NULL);
-        mesh.vertex_count = 0;
-        expect_mesh(read_back(&mesh, formats[i].write), 0, NULL, 0, NULL);
     }
 }
 
@@ -1040,7 +1012,7 @@ int main(void)
         cmocka_unit_test(bad_stl_of_bytes_is_refused),
         cmocka_unit_test(obj_is_read),
         cmocka_unit_test(bad_obj_is_refused),
-        cmocka_unit_test(polygons_of_ply_are_read),
+        cmocka_unit_test(polygons_are_read),
         cmocka_unit_test(collada_is_read),
         cmocka_unit_test(nodes_of_collada_are_placed),
         cmocka_unit_test(bad_collada_is_refused),
@@ -1048,7 +1020,6 @@ int main(void)
         cmocka_unit_test(other_files_are_refused),
         cmocka_unit_test(only_regular_files_are_read),
         cmocka_unit_test(all_formats_are_the_same_mesh),
-        cmocka_unit_test(extremes_are_read),
     };
     return cmocka_run_group_tests_name("mesh_read", tests, NULL, NULL);
 }
