@@ -174,6 +174,10 @@ fmb: pairs tested: 1, ignored: 2: 2 neighbours'
     scene robot.urdf
     shows '.bodies[0] | [.shape, .vertices, .position]'
     is '["hull",[[0,0,0],[4,0,0],[0,-4,0],[0,0,2]],[1,0,0]]'
+    sed -i "s|<collision>|$box&|" robot.urdf
+    scene robot.urdf
+    shows '.bodies[0].frames[1].vertices'
+    is '[[1,0,0],[5,0,0],[1,-4,0],[1,0,2]]'
     link "<collision><geometry><mesh filename='package://folder/m.obj'/></geometry></collision>"
     refused "robot.urdf: line 3: link 'a': package://folder/m.obj: not found: no folder above the robot is called folder, or has a package.xml with this name: give the folders that packages are in by --package-path" robot.urdf
     refused 'not found in --package-path /nowhere: ' robot.urdf --package-path /nowhere
