@@ -104,6 +104,14 @@ outcomes() {
     has '.pair_queries > 0 and .others > 0'
 }
 
+@test "events of several logs at the same offset are told apart" {
+    generate stack "$log"
+    "$FMB_BUILD/edit-log" --events 0 1 --rename FMB_SCENE_QUERY OTHER "$log" "$T/first.log"
+    "$FMB_BUILD/edit-log" --events 8 40 "$log" "$T/second.log"
+    cuts 0 "$T/first.log" "$T/second.log" -o "$cut" --to 0.001
+    has '.kept_events == 1'
+}
+
 @test "queries without their results keep their definitions" {
     generate --blast pairs 20000 --by-handle "$log"
     cuts 0 "$log" -o "$cut" --from 0.15 --channel FMB_PAIR_QUERY
