@@ -97,6 +97,25 @@ static void without_a_path_no_file_is_opened(void **state)
     assert_true(output_close(output, true));
 }
 
+static void each_kind_replaces_its_own_kind(void **state)
+{
+    static const char *const text[] = {
+        [OUTPUT_PAGE] = "<!DOCTYPE html>\n<html>",
+        [OUTPUT_REPORT] = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites n",
+        [OUTPUT_PROOF] = "\x1f\x8b\x08",
+        [OUTPUT_LOG] = "\xed\xa1\xda\x01"};
+    const struct output_rules rules = {.force = false}, force = {.force = true};
+    for (int kind = OUTPUT_PAGE; kind <= OUTPUT_LOG; kind++)
+        for (int old = OUTPUT_PAGE; old <= OUTPUT_LOG; old++) {
+            put_file("file", text[old]);
+            assert_int_equal(output_check(&(struct output_options){
+                                 .path = "file", .kind = (enum output_kind) kind, .rules = &rules}),
+                             kind == old && kind != OUTPUT_LOG);
+            assert_true(output_check(&(struct output_options){
+                .path = "file", .kind = (enum output_kind) kind, .rules = &force}));
+        }
+}
+
 static void a_recording_does_not_go_where_the_program_prints(void **state)
 {
     static const char *const path[] = {"said", "/dev/stdout"};
@@ -246,6 +265,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(without_a_path_no_file_is_opened, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_kind_replaces_its_own_kind, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_recording_does_not_go_where_the_program_prints, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(symbolic_links_stay, set_up, tear_down),
