@@ -48,3 +48,13 @@ void answer_scene_refused(struct answerer *answerer, const struct query_header *
     const size_t size = wire_write_scene_query(&query, message);
     require(!wire_read_scene_result(written, refuse(answerer, ANSWER_SCENE, size, status), result));
 }
+
+void answer_definition_refused(struct answerer *answerer, const struct query_header *header,
+                               enum fmb_status status, struct definition *result)
+{
+    static struct definition_query query;
+    query.header = *header;
+    const size_t size = wire_write_definition_query(&query, message);
+    require(
+        !wire_read_definition(written, refuse(answerer, ANSWER_DEFINITION, size, status), result));
+}

@@ -13,5 +13,7 @@ void answer_pair_refused(struct answerer *answerer, const struct pair_query *que
                          enum fmb_status status, struct pair_result *result);
 void answer_scene_refused(struct answerer *answerer, const struct query_header *header,
                           enum fmb_status status, struct scene_result *result);
+void answer_definition_refused(struct answerer *answerer, const struct query_header *header,
+                               enum fmb_status status, struct definition *result);
 
 #endif

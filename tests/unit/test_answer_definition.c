@@ -221,6 +221,20 @@ static void bad_definition_queries_are_refused(void **state)
     expect(FMB_BAD_ID, "sequence_number: not from 0 to 2^53 - 1");
 }
 
+static void refused_without_being_read(void **state)
+{
+    const struct query_header header = {7, 8, 9};
+    memset(&result, 0xa5, sizeof result);
+    answer_definition_refused(answerer, &header, FMB_BUSY, &result);
+    assert_int_equal(result.status, FMB_BUSY);
+    assert_string_equal(result.detail, "busy");
+    assert_int_equal(result.utime, 7);
+    assert_int_equal(result.client_id, 8);
+    assert_int_equal(result.sequence_number, 9);
+    assert_int_equal(result.body_count, 0);
+    assert_int_equal(result.next, 0);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -228,7 +242,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(definitions_are_found_by_handle),    TEST(the_largest_body_is_defined),
         TEST(definitions_come_in_pages),          TEST(definitions_are_no_uses),
-        TEST(bad_definition_queries_are_refused),
+        TEST(bad_definition_queries_are_refused), TEST(refused_without_being_read),
     };
     return cmocka_run_group_tests_name("answer_definition", tests, NULL, NULL);
 }

@@ -681,6 +681,20 @@ static void unknown_handles_are_listed(void **state)
     assert_int_equal(counts().misses, before.misses);
 }
 
+/* A body of the other dimension has this handle: that is wrong, whatever is not held besides. */
+static void a_handle_of_the_other_dimension_is_refused(void **state)
+{
+    const struct solid square = {.dim = 2, .shape = FMB_CUBOID, .component = {{1, 0}, {0, 1}}};
+    query->placement_count = 1;
+    scene_set(&scene, 0, &square, 5);
+    answer_to(query);
+    const struct handle handle = result.handle[0];
+    set_row(3);
+    scene_name(&query->placement[0], &(struct handle){{1}});
+    scene_name(&query->placement[2], &handle);
+    expect(FMB_WRONG_DIMENSION, "placements[2].dim: not that of the body with this handle");
+}
+
 /* Bodies in use are not evicted: those that come later are used once. */
 static void more_bodies_than_the_cache_holds_are_answered(void **state)
 {
@@ -998,6 +1012,7 @@ int main(void)
         TEST(malformed_bytes_are_refused),
         TEST(handles_and_whole_placements_may_be_mixed),
         TEST(unknown_handles_are_listed),
+        TEST(a_handle_of_the_other_dimension_is_refused),
         TEST(more_bodies_than_the_cache_holds_are_answered),
         TEST(answers_allocate_nothing),
         TEST(queries_between_steps_do_not_show),
