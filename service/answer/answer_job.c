@@ -144,7 +144,7 @@ static bool check_pair(struct answer_job *job)
 static bool check_indices(struct check_context *context, const char *field,
                           const unsigned (*pair)[2], int32_t count, int32_t placements)
 {
-    const size_t i = pairs_first_bad(pair, (size_t) count, (size_t) placements);
+    const size_t i = pairs_first_invalid(pair, (size_t) count, (size_t) placements);
     if (i == (size_t) count)
         return true;
     const bool first = pair[i][0] < (unsigned) placements;

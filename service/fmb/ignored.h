@@ -82,27 +82,6 @@ static inline bool pair_is_within_group(const struct fmb_scene *scene, unsigned 
     return group != 0 && group == scene->placements[b].group;
 }
 
-/* Whether a pair is of two different placements. */
-static inline bool pair_is_of_two(const unsigned pair[2], size_t placements)
-{
-    const unsigned end = (unsigned) placements;
-    return (pair[0] < end) & (pair[1] < end) & (pair[0] != pair[1]);
-}
-
-/* Returns the first pair that is not of two different placements; count if there is none. The first
- * loop has no branches, so that compilers vectorize it. */
-static inline size_t pairs_first_bad(const unsigned (*restrict pair)[2], size_t count,
-                                     size_t placements)
-{
-    bool good = true;
-    size_t i = 0;
-    for (size_t k = 0; k < count; k++)
-        good &= pair_is_of_two(pair[k], placements);
-    while (!good && pair_is_of_two(pair[i], placements))
-        i++;
-    return good ? count : i;
-}
-
 /* Returns the first listed pair that is within a group; pair_count if there is none. */
 static inline size_t pairs_first_grouped(const struct fmb_scene *scene)
 {

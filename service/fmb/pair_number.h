@@ -1,5 +1,5 @@
-/* The pairs of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, the numbers of all pairs (fmb.h), and the scene
- * of one pair.
+/* The pairs of FMB_PAIRS_ALL and FMB_PAIRS_ACROSS, the numbers of all pairs (fmb.h), which pairs
+ * are valid, and the scene of one pair.
  *
  *   ALL     a = 0 to n - 1, each with b = a + 1 to n - 1
  *   ACROSS  a = 0 to split - 1, each with b = split to n - 1
@@ -72,6 +72,27 @@ static inline bool pair_find(struct pair_numbers of, size_t *a, size_t *b)
             return true;
     }
     return false;
+}
+
+/* Whether a listed or an ignored pair is valid: of two different placements. */
+static inline bool pair_is_valid(const unsigned pair[2], size_t placements)
+{
+    const unsigned end = (unsigned) placements;
+    return (pair[0] < end) & (pair[1] < end) & (pair[0] != pair[1]);
+}
+
+/* Returns the first pair that is not valid; count if there is none. The first loop has no branches,
+ * so that compilers vectorize it. */
+static inline size_t pairs_first_invalid(const unsigned (*restrict pair)[2], size_t count,
+                                         size_t placements)
+{
+    bool good = true;
+    size_t i = 0;
+    for (size_t k = 0; k < count; k++)
+        good &= pair_is_valid(pair[k], placements);
+    while (!good && pair_is_valid(pair[i], placements))
+        i++;
+    return good ? count : i;
 }
 
 /* Returns the scene of one pair, of placements 0 and 1, without its placements. */

@@ -213,7 +213,7 @@ static enum fmb_status check_placements(const struct fmb_scene *scene, size_t co
 static enum fmb_status check_indices(const unsigned (*pair)[2], size_t count, size_t placements,
                                      struct why why, const char *array)
 {
-    const size_t i = pairs_first_bad(pair, count, placements);
+    const size_t i = pairs_first_invalid(pair, count, placements);
     return i == count ? FMB_OK : refuse_element(why, FMB_BAD_PAIR, array, i);
 }
 
