@@ -28,8 +28,9 @@ enum {
     LOOKS_STEP = 64,
     CORNERS_STEP = 64,   /* directions by vertices that a step tests in doubles */
     DIRECTIONS_MAX = 20, /* tried towards an end of the contact */
-    /* Lists of directions that separated no part of an interval: then verdicts come first. Plates
-     * in one plane have tens of directions that never separate them. */
+    /* After so many lists of directions, none of which separated a part of its interval, the exact
+     * verdict is determined first. Plates in one plane have tens of directions that never separate
+     * them. */
     FRUITLESS_MAX = 8
 };
 
@@ -164,6 +165,7 @@ static void add_corners(struct turn_decision *decision, int of, unsigned v0, uns
 struct turn_features {
     uint16_t vertex[FMB_HULL_VERTICES_MAX];
     unsigned count;
+    bool partial;              /* a hull has more vertices */
     unsigned char edge[32][2]; /* indices of vertex */
     unsigned edges;
 };
@@ -172,11 +174,12 @@ enum { NEAR_VERTICES = 6 };
 
 /* Sets all vertices of a frame that has few, or the vertices of a hull near the nearest point. The
  * edges are all pairs of these vertices; the edges of a cuboid are its components. */
-static void set_features(struct turn_decision *decision, int f, struct turn_features *out)
+static void set_features(const struct turn_decision *decision, int f, struct turn_features *out)
 {
     const struct support_view *view = &decision->path.pair.view[f];
     const struct fmb_frame *frame = view->placed.frame;
     out->count = view->vertices.count;
+    out->partial = false;
     out->edges = 0;
     if (frame->shape == FMB_CUBOID || frame->shape == FMB_BOX) {
         out->count = 1 + (unsigned) frame->count;
@@ -191,9 +194,9 @@ static void set_features(struct turn_decision *decision, int f, struct turn_feat
     for (unsigned i = 0; i < out->count; i++)
         out->vertex[i] = (uint16_t) i;
     if (out->count > NEAR_VERTICES) {
+        out->partial = true;
         double n[FMB_DIM_MAX];
         const double *last = decision->nearest.direction;
-        decision->partial = decision->path.pair.dim == 3;
         turn_body_direction(view, vec3_dot(last, last) > 0 ? last : decision->toward, n);
         out->count = turn_farthest(view, n, f ? -1 : 1, 0, out->vertex);
         /* Takes vertices far apart in the list: neighbours may be nearly collinear. */
@@ -256,8 +259,8 @@ static void list_nearest(struct turn_decision *decision)
     }
 }
 
-/* Begins to try the directions towards the nearest point at one time, which the programs compute.
- */
+/* Begins to try the directions towards the nearest point at a time. The programs compute this
+ * point, unless it is known. */
 static void begin_nearest(struct turn_decision *decision, double at)
 {
     decision->stage = TURN_CORNER;
@@ -284,6 +287,7 @@ static void begin_corners(struct turn_decision *decision)
     decision->cleared = NAN;
     for (int f = 0; f < 2; f++) {
         set_features(decision, f, &of[f]);
+        decision->partial = decision->partial || (of[f].partial && dim == 3);
         const struct turn_features *on = &of[f];
         for (unsigned i = 0; i < on->count; i++)
             for (unsigned j = i + 1; j < on->count; j++) {
@@ -487,7 +491,7 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     struct turn_direction direction[3];
     bool may = false;
     if (path->pair.rounded || !path->pair.usable || !is_next_to_contact(decision, interval) ||
-        interval.hi - interval.lo <= 2 * short_interval || decision->fruitless > FRUITLESS_MAX ||
+        interval.hi - interval.lo <= 2 * short_interval || decision->fruitless >= FRUITLESS_MAX ||
         decision->split == cut_of(decision, interval))
         return false;
     const unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
@@ -496,8 +500,9 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     return may;
 }
 
-/* Proves that the frames are apart over an interval if a direction of the last search does, and
- * removes it. Returns the greatest lower bound of their distance that was computed. */
+/* Removes the interval in progress if a direction of the last search separates the frames over it.
+ * direction: receives these directions. Returns the greatest lower bound of the distance that one
+ * of them proves. */
 static double prove_in_doubles(struct turn_decision *decision, struct turn_interval interval,
                                struct turn_direction direction[3])
 {
@@ -536,12 +541,12 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
         return;
     if (verdict == FMB_SEPARATED && decision->looked == middle && decision->sure) {
-        const double least = prove_in_doubles(decision, interval, direction);
-        if (least > 0)
+        const double bound = prove_in_doubles(decision, interval, direction);
+        if (bound > 0)
             return;
         const bool beside = interval.hi == decision->in[0] || interval.lo == decision->in[1];
         const bool close = decision->path.pair.rounded && !decision->bounded && !beside &&
-                           least > -close_bound * decision->path.pair.reach;
+                           bound > -close_bound * decision->path.pair.reach;
         if (!is_short && !close) {
             if (!decision->proof)
                 remember_apart(decision, interval, middle, &direction[0]);
@@ -628,7 +633,7 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
 {
     struct turn_exact *exact = &decision->exact;
     const double middle = cut_of(decision, interval);
-    const bool lists_all = decision->corners_at >= 0 || !decision->partial;
+    const bool complete = decision->corners_at >= 0 || !decision->partial;
     enum turn_outcome outcome;
     if (exact->trial) {
         if (!turn_exact_step(exact, &outcome))
@@ -653,11 +658,12 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
     }
     if (decision->outcome == TURN_APART)
         prove(decision, interval, NULL);
-    else if (decision->outcome == TURN_OPEN && lists_all &&
+    else if (decision->outcome == TURN_OPEN && complete &&
              interval.hi - interval.lo > least_interval)
         divide_open(decision, interval);
     else if (decision->outcome == TURN_OPEN && decision->corners_at != interval.hi)
-        /* Frames that touch at an end of the interval may separate in the direction there. */
+        /* Frames that touch at an end of the interval may separate in the direction there. So may
+         * hulls of which not all directions were listed, in that at the middle. */
         begin_nearest(decision, decision->corners_at == interval.lo ? interval.hi
                                 : decision->corners_at == middle    ? interval.lo
                                                                     : middle);

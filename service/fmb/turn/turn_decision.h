@@ -82,8 +82,9 @@ struct turn_decision {
     struct turn_path path;
     struct support_nearest nearest; /* of the last search in doubles */
     double looked, toward[FMB_DIM_MAX];
-    bool sure; /* the last search in doubles gave a verdict */
-    unsigned looks, fruitless;
+    bool sure;          /* the last search in doubles gave a verdict */
+    unsigned looks;     /* the work so far */
+    unsigned fruitless; /* lists of directions that separated no part of an interval */
     struct turn_interval stack[TURN_STACK]; /* the next interval is the last element */
     int count;
     double in[2], out[2]; /* first and last: known times of contact, and bounds of all of them */
@@ -104,7 +105,7 @@ struct turn_decision {
     enum fmb_verdict nearest_verdict;  /* at this time */
     struct turn_corners nearest_edges; /* the edges that this point is on, if nearest_are_edges */
     bool nearest_are_edges;
-    bool partial;              /* in 3D: the directions by vertices are some of those of a hull */
+    bool partial;              /* 3D: only some of a hull's directions by vertices were listed */
     double corners_at;         /* the time of the listed directions; -1: by vertices */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];

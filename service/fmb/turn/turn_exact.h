@@ -15,8 +15,8 @@ enum turn_outcome {
     TURN_REST   /* they may touch, and do not overlap */
 };
 
-/* Values of turn_corners.vertex[0] for a direction that is fixed in a frame and points towards the
- * nearest point: the exact direction, or the direction rounded to doubles. */
+/* Values of turn_corners.vertex[0] for a direction that is fixed in a frame, and points towards the
+ * nearest point at one time: the exact direction, or the direction rounded to doubles. */
 enum { TURN_NEAREST = UINT16_MAX, TURN_ROUNDED = UINT16_MAX - 1 };
 
 struct turn_trial;
