@@ -28,10 +28,10 @@ enum {
     LOOKS_STEP = 64,
     CORNERS_STEP = 64,   /* directions by vertices that a step tests in doubles */
     DIRECTIONS_MAX = 20, /* tried towards an end of the contact */
-    /* After so many lists of directions, none of which separated a part of its interval, the exact
-     * verdict is determined first. Plates in one plane have tens of directions that never separate
-     * them. */
-    FRUITLESS_MAX = 8
+    /* After so much work on lists of directions that separated no part of an interval, the exact
+     * verdict is determined before any list is tried. Plates in one plane have tens of directions
+     * that never separate them. */
+    LOOKS_FRUITLESS = 400
 };
 
 void turn_none(struct turn_decision *out)
@@ -71,7 +71,9 @@ static void remember(struct turn_decision *decision, double at, enum fmb_verdict
     decision->next_known = (decision->next_known + 1) % TURN_KNOWN;
 }
 
-static void begin_programs(struct turn_decision *decision, double s, bool nearest)
+/* Begins the programs for the pose at s: for the nearest point, or for the verdict, with want as in
+ * programs_begin(). If a frame has a radius, the nearest point gives the verdict. */
+static void begin_programs(struct turn_decision *decision, double s, bool nearest, unsigned want)
 {
     struct support_pair *pair = &decision->path.pair;
     struct support_column first[FMB_DIM_MAX + 1];
@@ -81,7 +83,7 @@ static void begin_programs(struct turn_decision *decision, double s, bool neares
     decision->looks += LOOKS_EXACT + turn_vertices(&decision->path) / VERTICES_OF_LOOK;
     decision->programs = nearest || pair->rounded
                              ? programs_begin_nearest(pair, false, first, count)
-                             : programs_begin(pair, 0, first, count);
+                             : programs_begin(pair, want, first, count);
 }
 
 /* Searches in doubles at s. Returns the verdict, or 0. If the origin is on the boundary of the
@@ -136,7 +138,7 @@ static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
 {
     const enum fmb_verdict verdict = verdict_in_doubles(decision, s);
     if (verdict == 0 && !decision->bounded)
-        begin_programs(decision, s, false);
+        begin_programs(decision, s, false, 0);
     return verdict;
 }
 
@@ -223,7 +225,17 @@ static bool may_separate(const struct turn_decision *decision, unsigned k,
                              interval.hi);
 }
 
-/* Keeps what the directions towards the nearest point depend on. */
+/* Begins a list of directions. at: as corners_at. */
+static void begin_list(struct turn_decision *decision, double at)
+{
+    decision->stage = TURN_CORNER;
+    decision->outcome = TURN_OPEN;
+    decision->corner = decision->corner_count = 0;
+    decision->corners_at = at;
+    decision->cleared = NAN;
+}
+
+/* Stores the verdict and the edges of the nearest point for list_nearest(). */
 static void take_nearest(struct turn_decision *decision, const struct programs_proof *proof)
 {
     unsigned count[2] = {0, 0};
@@ -237,41 +249,37 @@ static void take_nearest(struct turn_decision *decision, const struct programs_p
                 seen[count[f]] = v;
             count[f] += is_new;
         }
-    decision->nearest_are_edges = count[0] == 2 && count[1] == 2;
+    decision->nearest_are_edges = count[0] == 2 && count[1] == 2 && decision->path.pair.dim == 3;
 }
 
 /* Lists the directions towards the nearest point: the product of the edges that it is on, and the
- * directions fixed in a frame. A proof consists of doubles; in it, these are rounded. */
+ * directions fixed in a frame. A proof stores doubles: if one is wanted, these are rounded first.
+ */
 static void list_nearest(struct turn_decision *decision)
 {
-    const enum fmb_verdict verdict = decision->nearest_verdict;
     const uint16_t *v = decision->nearest_edges.vertex;
-    const uint16_t fixed =
-        decision->proof && verdict == FMB_SEPARATED ? TURN_ROUNDED : TURN_NEAREST;
+    const bool rounds = decision->proof && decision->nearest_verdict == FMB_SEPARATED;
     decision->corner_count = 0;
-    if (verdict == FMB_OVERLAPPING || (verdict == FMB_TOUCHING && !decision->path.pair.rounded))
+    if (decision->nearest_verdict == FMB_OVERLAPPING)
         return;
     if (decision->nearest_are_edges)
         add_corners(decision, 2, v[0], v[1], v[2], v[3]);
-    for (int f = 0; f < 2; f++) {
-        decision->corners[decision->corner_count] = (struct turn_corners){f, {fixed}};
+    for (int k = rounds ? 0 : 2; k < 4; k++) {
+        const uint16_t which = k < 2 ? TURN_ROUNDED : TURN_NEAREST;
+        decision->corners[decision->corner_count] = (struct turn_corners){k % 2, {which}};
         decision->sign[decision->corner_count++] = 1;
     }
 }
 
-/* Begins to try the directions towards the nearest point at a time. The programs compute this
- * point, unless it is known. */
+/* Begins to try the directions towards the nearest point at a time or, if the frames touch then,
+ * the direction that proves it. The programs compute this, unless it is known. */
 static void begin_nearest(struct turn_decision *decision, double at)
 {
-    decision->stage = TURN_CORNER;
-    decision->outcome = TURN_OPEN;
-    decision->corner = 0;
-    decision->corners_at = at;
-    decision->cleared = NAN;
+    begin_list(decision, at);
     if (decision->nearest_at == at)
         list_nearest(decision);
     else
-        begin_programs(decision, at, true);
+        begin_programs(decision, at, known_at(decision, at) != FMB_TOUCHING, FMB_WANT_CERTIFICATE);
 }
 
 /* Lists the directions by vertices that will be tried. */
@@ -279,12 +287,9 @@ static void begin_corners(struct turn_decision *decision)
 {
     struct turn_features of[2];
     const int dim = decision->path.pair.dim;
-    decision->stage = TURN_CORNER;
-    decision->outcome = TURN_OPEN;
-    decision->corner = decision->corner_count = 0;
+    begin_list(decision, -1);
     decision->partial = false;
-    decision->corners_at = -1;
-    decision->cleared = NAN;
+    decision->began = decision->looks;
     for (int f = 0; f < 2; f++) {
         set_features(decision, f, &of[f]);
         decision->partial = decision->partial || (of[f].partial && dim == 3);
@@ -389,7 +394,7 @@ static void divide(struct turn_decision *decision, struct turn_interval interval
         push(decision, interval.lo, middle);
 }
 
-/* Removes a short interval that contains the end of the contact. */
+/* Removes a short interval that contains an end of the contact, and extends out[] to it. */
 static void enclose_end(struct turn_decision *decision, struct turn_interval interval)
 {
     decision->out[0] = fmin(decision->out[0], interval.lo);
@@ -432,7 +437,11 @@ static void prove(struct turn_decision *decision, struct turn_interval interval,
         return;
     }
     part->corners = decision->corners[decision->corner - 1];
-    if (part->corners.vertex[0] >= TURN_ROUNDED) {
+    if (part->corners.vertex[0] == TURN_NEAREST) {
+        proof->count = TURN_PROOF + 1;
+        return;
+    }
+    if (part->corners.vertex[0] == TURN_ROUNDED) {
         set_rounded(decision, &part->corners, &part->direction);
         return;
     }
@@ -491,7 +500,7 @@ static bool may_cross(const struct turn_decision *decision, struct turn_interval
     struct turn_direction direction[3];
     bool may = false;
     if (path->pair.rounded || !path->pair.usable || !is_next_to_contact(decision, interval) ||
-        interval.hi - interval.lo <= 2 * short_interval || decision->fruitless >= FRUITLESS_MAX ||
+        interval.hi - interval.lo <= 2 * short_interval || decision->fruitless >= LOOKS_FRUITLESS ||
         decision->split == cut_of(decision, interval))
         return false;
     const unsigned count = turn_directions(path, decision->nearest.direction, 0, direction);
@@ -535,7 +544,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         if (may_cross(decision, interval))
             begin_corners(decision);
         else
-            begin_programs(decision, middle, false);
+            begin_programs(decision, middle, false, 0);
         return;
     }
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
@@ -562,13 +571,14 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         begin_corners(decision);
 }
 
-/* Determines the exact verdict within an interval over which no direction separates the frames. */
+/* Determines the exact verdict where the interval is divided: no direction separates the frames
+ * over all of it. */
 static void look_exactly(struct turn_decision *decision, struct turn_interval interval)
 {
     const double middle = cut_of(decision, interval);
     const enum fmb_verdict verdict = known_at(decision, middle);
     if (verdict == 0)
-        begin_programs(decision, middle, false);
+        begin_programs(decision, middle, false, 0);
     else if (verdict == FMB_SEPARATED || !add_contact(decision, middle, verdict, interval))
         divide(decision, interval);
 }
@@ -624,7 +634,7 @@ static void divide_open(struct turn_decision *decision, struct turn_interval int
              late ? decision->cleared : interval.hi);
         decision->split = decision->beyond;
     } else {
-        decision->fruitless++;
+        decision->fruitless += decision->looks - decision->began;
         decision->stage = TURN_EXACT;
     }
 }
@@ -633,7 +643,8 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
 {
     struct turn_exact *exact = &decision->exact;
     const double middle = cut_of(decision, interval);
-    const bool complete = decision->corners_at >= 0 || !decision->partial;
+    const bool complete =
+        decision->corners_at >= 0 || !decision->partial || !isnan(decision->cleared);
     enum turn_outcome outcome;
     if (exact->trial) {
         if (!turn_exact_step(exact, &outcome))
@@ -975,7 +986,7 @@ static void step_gap(struct turn_decision *decision, struct fmb_answer *answer)
 static void begin_point(struct turn_decision *decision)
 {
     if (decision->in[0] <= decision->in[1] && decision->want & FMB_WANT_POINT)
-        begin_programs(decision, decision->overlaps ? decision->overlap : decision->in[0], true);
+        begin_programs(decision, decision->overlaps ? decision->overlap : decision->in[0], true, 0);
     else
         turn_end(decision);
 }
@@ -1000,7 +1011,8 @@ static bool take_programs(struct turn_decision *decision, struct fmb_answer *ans
         turn_exact_take(&decision->exact, programs_proof(programs));
         take_nearest(decision, programs_proof(programs));
         decision->nearest_at = at;
-        list_nearest(decision);
+        if (decision->stage == TURN_CORNER)
+            list_nearest(decision);
     }
     programs_end(programs, NULL);
     decision->programs = NULL;

@@ -14,9 +14,9 @@
  *             tried. If neither frame has a radius, the directions are given by vertices: all
  *             normals of faces and all products of edges of frames with few vertices; for hulls,
  *             the normals and products near the nearest point. For frames with a radius, for hulls
- *             that none of these separates, and over the shortest intervals, the directions point
- *             towards the exact nearest point: they are fixed in either frame, or the product of
- *             the edges that the point is on.
+ *             that these directions do not separate, and over the shortest intervals, the
+ *             directions point towards the exact nearest point: they are fixed in either frame, or
+ *             the product of the two edges that contain the nearest points.
  *
  * The verdict is OVERLAPPING if the frames overlap at an examined time. Otherwise the intervals
  * cover the window, and the frames do not overlap in any of them; the verdict is TOUCHING if they
@@ -68,7 +68,8 @@ struct turn_part {
 };
 
 struct turn_proof {
-    unsigned count; /* above TURN_PROOF: the proof exceeds the capacity */
+    unsigned
+        count; /* above TURN_PROOF: there are more parts, or doubles do not state a direction */
     struct turn_part part[TURN_PROOF];
 };
 
@@ -84,7 +85,8 @@ struct turn_decision {
     double looked, toward[FMB_DIM_MAX];
     bool sure;          /* the last search in doubles gave a verdict */
     unsigned looks;     /* the work so far */
-    unsigned fruitless; /* lists of directions that separated no part of an interval */
+    unsigned began;     /* the work before the last list of directions by vertices */
+    unsigned fruitless; /* the work on lists that separated no part of an interval */
     struct turn_interval stack[TURN_STACK]; /* the next interval is the last element */
     int count;
     double in[2], out[2]; /* first and last: known times of contact, and bounds of all of them */

@@ -10,13 +10,13 @@
  * all coefficients of one of its coordinates are of one sign. n . x is not constant on a solid
  * frame, nor on the frame in which n is fixed if m . x differs between two of its vertices.
  *
- * Radii: let R be their sum. The frames are apart where n . (b - a) > R |n|. If n = N m, then with
- * the positive factors of the polynomial |n| is |m| |q_A|^2 |q_B|^2, and the coefficients of
- * R |m| |q_A|^2 |q_B|^2 are subtracted. For a product of edges |n| is at most the polynomial whose
- * coefficients are the lengths of those of n; R times this polynomial is subtracted. A length that
- * is not a whole number of units is replaced by an upper bound that is too large by less than
- * 2^-ROOT_BITS of a unit. (Along such a direction the frames never rest on each other, since
- * n . (b - a) has rational coefficients.) Frames with a radius are solid. */
+ * Radii: let R be their sum. The frames are apart where n . (b - a) > R |n|. If n = N m, the
+ * factors of the polynomial make R |n| equal to R |m| |q_A|^2 |q_B|^2, whose coefficients are
+ * subtracted. For a product of edges |n| is at most the polynomial whose coefficients are the
+ * lengths of those of n; R times this polynomial is subtracted. R times a length that is not a
+ * whole number of units is replaced by an upper bound that is too large by less than 2^-ROOT_BITS
+ * of a unit. (Along a direction N m that needs one, the frames never rest on each other, since n .
+ * (b - a) has rational coefficients.) Frames with a radius are solid. */
 #include "turn_exact.h"
 
 #include "integer.h"

@@ -36,7 +36,8 @@ void turn_exact_begin(const struct turn_path *path, struct turn_exact *out);
 void turn_exact_end(struct turn_exact *exact);
 
 /* Sets the direction towards the nearest point, in the coordinates of each frame. proof: the proof
- * of a complete decision by the nearest point (programs_begin_nearest()). */
+ * of a complete decision by the nearest point (programs_begin_nearest()); or the direction that
+ * proves a touch, of a decision of the verdict. */
 struct programs_proof;
 void turn_exact_take(struct turn_exact *exact, const struct programs_proof *proof);
 
