@@ -391,6 +391,73 @@ static void hulls_that_yaw_and_slide_on_a_table(void **state)
     expect_resting(&rest, 0.5);
 }
 
+/* A table with 12 corners and an edge on it, which yaw in opposite directions. */
+static void edges_yaw_on_a_turning_hull(void **state)
+{
+    static const double corner[12][2] = {{4, 0},     {3.5, 2},  {2, 3.5},  {0, 4},
+                                         {-2, 3.5},  {-3.5, 2}, {-4, 0},   {-3.5, -2},
+                                         {-2, -3.5}, {0, -4},   {2, -3.5}, {3.5, -2}};
+    static const double edge[] = {-1, 0, 0, 1, 0, 0, 0, 0.25, 1};
+    const double back[4] = {3, 0, 0, -1}, forth[4] = {3, 0, 0, 1};
+    struct resting rest;
+    double vertices[24][3];
+    for (int i = 0; i < 24; i++) {
+        memcpy(vertices[i], corner[i % 12], sizeof corner[0]);
+        vertices[i][2] = i < 12 ? 0 : -1;
+    }
+    assert_int_equal(fmb_body_make_hull(3, vertices[0], 72, rest.memory[0], &rest.body[0]), FMB_OK);
+    assert_int_equal(fmb_body_make_hull(3, edge, 9, rest.memory[1], &rest.body[1]), FMB_OK);
+    rest.placement[0] = turning(&rest.body[0], forth, back);
+    rest.placement[1] = turning(&rest.body[1], back, forth);
+    expect_resting(&rest, 0);
+}
+
+/* A prism touches a wall at the beginning, after 53.13 and after 90 degrees, and its corners are in
+ * the wall in between. The vertical edges of both are parallel throughout. */
+static void a_prism_that_touches_three_times_overlaps(void **state)
+{
+    static const double corner[5][2] = {{3, 0}, {3, -1.5}, {1, -3}, {0, -3}, {-1, 0}};
+    struct resting rest;
+    double vertices[10][3];
+    for (int i = 0; i < 10; i++) {
+        memcpy(vertices[i], corner[i % 5], sizeof corner[0]);
+        vertices[i][2] = i < 5 ? -1 : 1;
+    }
+    assert_int_equal(fmb_body_make_hull(3, vertices[0], 30, rest.memory[1], &rest.body[1]), FMB_OK);
+    box_of(2, 20, 4, &rest.body[0]);
+    rest.placement[0] = (struct fmb_placement){.body = &rest.body[0], .position = {4, 0, 0}};
+    rest.placement[1] =
+        turning(&rest.body[1], (const double[]){1, 0, 0, 0}, (const double[]){1, 0, 0, 1});
+    expect(rest.placement, FMB_OVERLAPPING, 0, 2);
+}
+
+/* Edges pass each other at a distance of about 3e-7. Each corner of the flat box is two vertices.
+ */
+static void a_flat_box_passes_closely(void **state)
+{
+    struct resting rest;
+    box_of(0.7578125, 0, 2.99609375, &rest.body[0]);
+    box_of(1.03125, 1.171875, 1.93359375, &rest.body[1]);
+    rest.placement[0] = (struct fmb_placement){
+        .body = &rest.body[0],
+        .orientation = {-0.344970703125, -0.669189453125, 0.57177734375, -0.052001953125},
+        .end_orientation = {-0.405303955078125, -0.690887451171875, 0.614013671875, 0.06103515625},
+        .position = {-0.86302566528320312, -0.32026386260986328, 0.75673103332519531},
+        .end_position = {-0.90167713165283203, -0.34527492523193359, 0.70648193359375},
+        .orientation_count = 4,
+        .end_count = 7};
+    rest.placement[1] = (struct fmb_placement){
+        .body = &rest.body[1],
+        .orientation = {-0.885498046875, 0.909423828125, 0.08837890625, -0.67626953125},
+        .end_orientation = {-0.868316650390625, 0.9230499267578125, 0.0667724609375,
+                            -0.7143707275390625},
+        .position = {0.079602777816035086, 1.4218058233416855, 1.9582365414053697},
+        .end_position = {-0.011046826981328195, 1.4269346838153183, 2.0663765331656236},
+        .orientation_count = 4,
+        .end_count = 7};
+    expect(rest.placement, FMB_SEPARATED, 0, 0);
+}
+
 /* Both turn about one axis as one body, at rest relative to each other: 2^-40 deep, touching, or
  * 2^-40 apart. */
 static void bodies_on_one_turntable(void **state)
@@ -896,6 +963,9 @@ int main(void)
         cmocka_unit_test(boxes_contain_the_turning_body),
         cmocka_unit_test(bodies_that_yaw_and_slide_on_a_table),
         cmocka_unit_test(hulls_that_yaw_and_slide_on_a_table),
+        cmocka_unit_test(edges_yaw_on_a_turning_hull),
+        cmocka_unit_test(a_prism_that_touches_three_times_overlaps),
+        cmocka_unit_test(a_flat_box_passes_closely),
         cmocka_unit_test(bodies_on_one_turntable),
         cmocka_unit_test(doors_hang_on_their_posts),
         cmocka_unit_test(cubes_tumble_over_an_edge),

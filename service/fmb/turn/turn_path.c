@@ -143,8 +143,9 @@ unsigned turn_farthest(const struct support_view *view, const double n[FMB_DIM_M
                         out);
 }
 
-static void get_edge(const struct support_view *view, const uint16_t vertex[2],
-                     double out[FMB_DIM_MAX])
+/* out := the edge, scaled. Returns its largest component before that. */
+static double get_edge(const struct support_view *view, const uint16_t vertex[2],
+                       double out[FMB_DIM_MAX])
 {
     for (int axis = 0; axis < FMB_DIM_MAX; axis++) {
         const double *at = view->vertices.at + (size_t) axis * view->vertices.stride;
@@ -153,6 +154,7 @@ static void get_edge(const struct support_view *view, const uint16_t vertex[2],
     const double largest = vec3_largest(out);
     for (int axis = 0; axis < FMB_DIM_MAX && largest > 0; axis++)
         out[axis] /= largest;
+    return largest;
 }
 
 void turn_direction_of(const struct support_view *view, const struct turn_corners *corners,
@@ -176,6 +178,24 @@ void turn_direction_of(const struct support_view *view, const struct turn_corner
             out->m[0][axis] = -out->m[0][axis];
 }
 
+/* Removes the vertices of a short list that are close to an earlier one, such as the second edge of
+ * a thin plate. Returns the number of the others. */
+static unsigned remove_close(const struct support_view *view, unsigned count, uint16_t *list)
+{
+    unsigned kept = 0;
+    for (unsigned i = 0; i < count; i++) {
+        double edge[FMB_DIM_MAX];
+        bool close = false;
+        for (unsigned k = 0; k < kept && count <= SUPPORT_SMALL && !close; k++) {
+            const uint16_t ends[2] = {list[k], list[i]};
+            close = get_edge(view, ends, edge) <= 0x1p-20 * view->reach;
+        }
+        if (!close)
+            list[kept++] = list[i];
+    }
+    return kept;
+}
+
 /* For a vertex of one frame and a face of the other, the direction is fixed in the frame of the
  * face, which has more supporting vertices. For two edges that are not parallel it is their
  * product. It may be fixed in either frame for two parallel edges, and for frames with a radius,
@@ -190,6 +210,7 @@ unsigned turn_directions(const struct turn_path *path, const double nearest[FMB_
         out[f].of = f;
         turn_body_direction(&view[f], nearest, out[f].m[0]);
         count[f] = turn_farthest(&view[f], out[f].m[0], f ? -1 : 1, slack, list[f]);
+        count[f] = remove_close(&view[f], count[f], list[f]);
     }
     if (count[0] == 2 && count[1] == 2 && path->pair.dim == 3) {
         struct turn_direction edges = {.of = 2};
