@@ -1,6 +1,6 @@
-#define _GNU_SOURCE
 /* fmbd: answers collision queries on an LCM bus. Reads the options, opens the bus, drops
  * privileges, and serves until SIGINT or SIGTERM. Errors are reported on stderr. */
+#define _GNU_SOURCE
 #include "bus.h"
 #include "cache.h"
 #include "clock.h"
@@ -9,7 +9,6 @@
 #include "process.h"
 #include "server.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
@@ -90,7 +89,6 @@ static bool parse_frames(const char *text, size_t *out)
     unsigned long long value = strtoull(text, &end, 10);
     bool digits = text[0] >= '0' && text[0] <= '9';
     *out = (size_t) value;
-    static_assert(CACHE_FRAMES_MAX == 10000000, "the text of --frames");
     return digits && *end == '\0' && errno == 0 && value >= 1 && value <= CACHE_FRAMES_MAX;
 }
 
@@ -107,6 +105,8 @@ static int parse_options(int argc, char **argv, struct daemon_options *out)
         {0},
     };
     *out = (struct daemon_options){.prefix = "", .frames = DEFAULT_FRAMES};
+    char range[64];
+    snprintf(range, sizeof range, "a number from 1 to %d", CACHE_FRAMES_MAX);
     int option;
     while ((option = getopt_long(argc, argv, ":l:p:f:u:hV", long_options, NULL)) != -1) {
         switch (option) {
@@ -118,7 +118,7 @@ static int parse_options(int argc, char **argv, struct daemon_options *out)
             break;
         case 'f':
             if (!parse_frames(optarg, &out->frames))
-                return wrong_option("--frames", optarg, "a number from 1 to 10000000");
+                return wrong_option("--frames", optarg, range);
             break;
         case 'u': out->user = optarg; break;
         case 'h': printf(usage, DEFAULT_FRAMES, CACHE_FRAMES_MAX); return EXIT_SUCCESS;
@@ -130,6 +130,8 @@ static int parse_options(int argc, char **argv, struct daemon_options *out)
         return wrong_option("argument", argv[optind], "options only");
     return -1;
 }
+
+/* ---- The daemon ---- */
 
 /* Longest time to read the bus in a row, so that a flood of datagrams does not prevent answers. */
 static const int64_t drain_max_ns = 200000;
@@ -206,8 +208,8 @@ static void notify(const struct manager *manager, const char *text)
 }
 
 /* Opens the socket that the environment names (NOTIFY_SOCKET), and reads the watchdog's interval
- * (WATCHDOG_USEC, WATCHDOG_PID). Without a manager the functions below have no effect. None of them
- * blocks. */
+ * (WATCHDOG_USEC, WATCHDOG_PID). Without a manager, notify() and notify_alive() have no effect.
+ * Neither blocks. */
 static void notify_open(struct manager *manager)
 {
     *manager = (struct manager){.fd = connect_to(getenv("NOTIFY_SOCKET"))};
