@@ -271,11 +271,13 @@ static void stop_longest_job(struct server *server, int for_client)
     update_activity(server, client);
 }
 
-/* Answers the query in jobs.spare if it is a short pair query. Returns whether it was. */
+/* Answers the query in jobs.spare if it is a short pair query. Returns whether it was. If not, its
+ * bodies have been found, or one has been added: only the bodies tell whether a pair is short. */
 static bool answer_short(struct server *server)
 {
     struct answer_job *answer = server->jobs.spare;
     const int64_t begin_ns = server->clock_ns();
+    /* Two steps: the first checks the fields, the second finds the bodies. */
     bool complete =
         answer_job_step(answer, server->answerer) || answer_job_step(answer, server->answerer);
     if (!complete && !answer_job_is_short(answer))
@@ -288,8 +290,8 @@ static bool answer_short(struct server *server)
 
 /* Answers a query at once, or begins a job for it; a pair that takes several steps, from the FIFO
  * of short queries, is moved to that of scenes if the client has other scenes or no job is free.
- * (The queue has capacity for it, from which it has just been popped.) Returns the job; NULL: none.
- */
+ * (The queue has capacity for it, from which it has just been popped.) It is begun anew from there:
+ * bodies that were found count as hits again. Returns the job; NULL: none. */
 static struct job *begin(struct server *server, const struct queue_datagram *query,
                          enum queue_fifo fifo)
 {

@@ -29,8 +29,8 @@ static inline bool handle_equal(const struct handle *a, const struct handle *b)
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-/* Returns the handle of an encoded geometry of size bytes. GLib allocates some hundred bytes during
- * the call; out of memory, it aborts the process. */
+/* Returns the handle of an encoded geometry of size bytes. The call allocates about 100 bytes
+ * through GLib, which aborts the process if memory is exhausted. */
 struct handle handle_of(const unsigned char *bytes, size_t size);
 
 #endif

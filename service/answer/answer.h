@@ -76,8 +76,8 @@ const char *answer_job_begin(struct answer_job *job, enum answer_kind kind,
  * the query is complete or abandoned. Returns whether the result is complete. */
 bool answer_job_step(struct answer_job *job, struct answerer *answerer);
 
-/* Whether the remaining steps decide only one pair of frames, without hulls and radii. On input: a
- * pair query that two steps have not completed. */
+/* Whether the remaining steps only decide one pair of frames, neither a hull nor with a radius. On
+ * input: a pair query that two steps have not completed. */
 bool answer_job_is_short(const struct answer_job *job);
 
 /* Whether at least one pair of a scene has been answered. */

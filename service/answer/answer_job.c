@@ -313,7 +313,7 @@ static bool is_large(const struct fmb_body *body)
 
 bool answer_job_is_short(const struct answer_job *job)
 {
-    return job->is_pair && job->stage != ADDING && !job->in_steps;
+    return job->stage != ADDING && !job->in_steps;
 }
 
 static bool refuse_unknown(struct answer_job *job, int32_t i)

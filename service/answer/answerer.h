@@ -18,12 +18,12 @@ enum {
     DEFINITION_HEAD_BYTES = offsetof(struct definition, body)
 };
 
-/* Sets `size` bytes of a result, from its head on: all but the head is 0. With a status other than
+/* Clears the first `size` bytes of a result, and fills in its head. With a status other than
  * FMB_OK, the detail is its text. */
 void answerer_begin(const struct answerer *answerer, const struct query_header *query,
                     enum fmb_status status, struct result_head *out, size_t size);
 
-/* The same of a pair: also sets the ids of the bodies. */
+/* The same for a pair: also sets the ids of the bodies. */
 void answerer_begin_pair(const struct answerer *answerer, const struct pair_query *query,
                          enum fmb_status status, struct pair_result *result);
 

@@ -153,12 +153,14 @@ void cache_destroy(struct cache *cache)
     free(cache);
 }
 
-/* Writes to each page, since the system allocates a page when it is first written to. */
 void cache_prefault(struct cache *cache)
 {
     enum { TAKEN_MAX = 64 << 20, PAGE = 4096 };
     volatile unsigned char *page = cache->memory;
-    for (size_t at = 0; at < cache->size && cache->size <= TAKEN_MAX; at += PAGE)
+    if (cache->size > TAKEN_MAX)
+        return;
+    /* The system allocates a page when it is first written to. */
+    for (size_t at = 0; at < cache->size; at += PAGE)
         page[at] = page[at];
 }
 
