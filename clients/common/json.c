@@ -921,12 +921,17 @@ static bool skip_number(const char **at)
     return skip_digits(at) && !strchr("+-.eE", **at);
 }
 
+/* Whether these are four hexadecimal digits, and not 0000. */
+static bool are_unicode_digits(const char *digits)
+{
+    return strspn(digits, "0123456789abcdefABCDEF") >= 4 && strncmp(digits, "0000", 4) != 0;
+}
+
 static bool skip_string(const char **at)
 {
     while (*++*at != '"') {
-        const char *digits = strncmp(*at, "\\u", 2) == 0 ? *at + 2 : "0001";
-        if ((unsigned char) **at < ' ' || strncmp(digits, "0000", 4) == 0 ||
-            strspn(digits, "0123456789abcdefABCDEF") < 4)
+        const bool is_unicode = strncmp(*at, "\\u", 2) == 0;
+        if ((unsigned char) **at < ' ' || (is_unicode && !are_unicode_digits(*at + 2)))
             return false;
         *at += **at == '\\';
     }
