@@ -315,8 +315,10 @@ static void answer_query(struct replay *replay, struct match_item *query)
                             &answered)) {
         replay_fail(replay, replay->paths[query->place.log], EIO);
     } else {
-        counts_of(replay)->not_sent++;
-        counts_of(replay)->answered++;
+        if (replay->client) {
+            counts_of(replay)->not_sent++;
+            counts_of(replay)->answered++;
+        }
         take_answer(replay, query, &answered);
     }
 }
