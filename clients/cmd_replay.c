@@ -77,7 +77,7 @@ static const char usage[] =
     "contradict the first are reported and counted as different. Times to decide are\n"
     "shown, not compared.\n"
     "\n"
-    "To replay a part of a log, copy it by 'fmb log cut'. The logs are read twice.\n"
+    "To replay a part of a log, copy it with 'fmb log cut'. The logs are read twice.\n"
     "Memory: some 300 bytes for each distinct body, and 100 bytes for each query and\n"
     "each result, also of a golden log, for whose results it is 200; with a golden\n"
     "log of other clients, 1 kB for each query.\n"

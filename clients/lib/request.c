@@ -218,9 +218,9 @@ static void adapt_retry(struct request_pace *pace, const struct request *request
         pace->retry *= 2;
 }
 
-/* Widens the reordering window after a result of a query that is not under way: its first result
- * came before, so with one service on the bus a repeat was spurious. The window decays, so about
- * one spurious repeat in a hundred results remains. */
+/* Widens the reordering window after a result that no query under way expects: usually the second
+ * result of a query that was repeated too early. With two services on the channels the window stays
+ * at its limit. The window decays, so about one spurious repeat in a hundred results remains. */
 static void adapt_to_spurious_repeat(struct request_pace *pace)
 {
     const int64_t wider = 2 * pace->reordering_window + REORDERING_STEP_US * ns_per_us;

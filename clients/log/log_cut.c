@@ -129,8 +129,9 @@ static bool append_own(void *user, enum log_kind kind, const void *bytes, size_t
 
 /* ---- The second pass ---- */
 
-/* Writes the definitions that a query needs before it. A query does not define the handles that it
- * names: a service that lacks one of its bodies keeps none of them. */
+/* Writes the definitions that a query needs before it, and notes the bodies that the event defines.
+ * A query does not define the handles that it names: a service that lacks one of its bodies keeps
+ * none of them. */
 static void define(struct cutter *cut, enum log_kind kind, const struct log_event *event)
 {
     const uint32_t size = (uint32_t) event->kept;
@@ -171,7 +172,6 @@ static bool is_chosen(struct cutter *cut, enum log_kind kind, const struct log_e
            (kind != LOG_NAMES || log_choice_is_all(choice));
 }
 
-/* The output begins with the names of all bodies, unless the whole log follows, which has them. */
 static void copy_event(struct cutter *cut, const struct log_event *event)
 {
     struct log_cut_counts *counts = cut->counts;
@@ -181,6 +181,8 @@ static void copy_event(struct cutter *cut, const struct log_event *event)
     if (!is_chosen(cut, kind, event))
         return;
     cut->utime = event->utime;
+    /* The output begins with the names of all bodies, unless the whole log follows, which has them.
+     */
     if (counts->kept_events++ == 0 && !log_choice_is_all(&cut->options->choice)) {
         counts->names = body_names_count(cut->names);
         body_names_write(cut->names, cut->utime, append_own, cut);

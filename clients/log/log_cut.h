@@ -11,7 +11,7 @@
  * the new log begins with the names of all bodies of the logs.
  *
  * The logs are read twice: once to choose, once to copy. Memory: that of match.h, each distinct
- * body, and the largest event. */
+ * body, and twice the largest event. */
 #ifndef LOG_CUT_H
 #define LOG_CUT_H
 

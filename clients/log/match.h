@@ -49,6 +49,7 @@ struct match_item {
     const struct match_item *own; /* of a golden result: its query in the golden log; NULL: none */
 };
 
+/* Returns the position of an event of the log with this index. */
 struct match_place match_place_of(int log, const struct log_event *event);
 
 /* Reads a query or a result of a log: its key, its place, and whether it is transient. In: memory

@@ -166,7 +166,7 @@ static void keep_query(struct record_bodies *bodies)
             want(bodies, &bodies->placement[i].body.handle);
 }
 
-/* Drops all bodies. */
+/* Drops all bodies and the handles that are wanted, to bound the memory. */
 static void drop(struct record_bodies *bodies)
 {
     bodies->counts.dropped += (int64_t) definitions_count(bodies->definitions);

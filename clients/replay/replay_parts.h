@@ -42,7 +42,7 @@ struct replay {
     struct body_names *golden_names;
 
     struct local_answerer *local;
-    /* The bus (replay_answer.c). */
+    /* Used only with a service on the bus: */
     struct fmb_client *client; /* NULL: this process answers */
     int signals;               /* readable after SIGINT and SIGTERM; -1: not opened */
     struct replay_slot slot[FMB_CLIENT_RAW_WINDOW];
@@ -59,7 +59,7 @@ struct replay {
     unsigned char whole[QUERY_BYTES_MAX]; /* a query to be sent with the frames of its bodies */
     /* The comparison in progress: its query, as in the log and decoded, and both results. */
     const struct match_item *item;
-    struct logged_query compared; /* before the comparison, for the steps of a query on the bus */
+    struct logged_query compared; /* also scratch memory for queries to and results from the bus */
     struct logged_query golden_query; /* of the golden result, if it has its own */
     struct logged_result then, now;
     struct tally_channel others;    /* queries whose labels are not counted */
