@@ -15,7 +15,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -983,7 +982,7 @@ static void unknown_bodies_one_by_one_are_sent_whole(void **state)
 }
 
 /* Of two services on a bus, the one that holds no body answers first. */
-static void an_answer_counts_more_than_an_unknown_body(void **state)
+static void two_services_are_answered_though_one_holds_no_body(void **state)
 {
     struct fmb_client_answer answer;
     relay_start(2000, 5, 6);
@@ -1102,6 +1101,27 @@ static void second_results_are_ignored(void **state)
 }
 
 /* ---- The process ---- */
+
+static void a_child_that_closes_harms_nothing(void **state)
+{
+    struct relay *relay = relay_new();
+    int status;
+    relay_open(relay, 2000);
+    struct fmb_client *client = relay_client(relay, 5, 1);
+    const struct fmb_scene scene = listed();
+    relay_query(client, &scene);
+    const pid_t child = fork();
+    if (child == 0) {
+        fmb_client_close(client);
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    relay_query(client, &scene);
+    assert_int_equal(relay_dropped(relay), 0);
+    fmb_client_close(client);
+    relay_close(relay);
+}
 
 /* ---- Callbacks ---- */
 
@@ -1235,10 +1255,11 @@ int main(int argc, char **argv)
         RELAY_TEST(slow_services_get_fewer_pairs_a_query),
         cmocka_unit_test(unknown_bodies_for_ever_are_sent_whole),
         cmocka_unit_test(unknown_bodies_one_by_one_are_sent_whole),
-        RELAY_TEST(an_answer_counts_more_than_an_unknown_body),
+        RELAY_TEST(two_services_are_answered_though_one_holds_no_body),
         cmocka_unit_test(wrong_handles_of_a_pair_are_malformed),
         cmocka_unit_test(bodies_are_kept_until_the_table_is_full),
         RELAY_TEST(second_results_are_ignored),
+        cmocka_unit_test(a_child_that_closes_harms_nothing),
         RELAY_TEST(no_call_within_a_callback),
         RELAY_TEST(a_watcher_sees_heartbeats),
         cmocka_unit_test(wrong_options_are_refused),
