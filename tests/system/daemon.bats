@@ -256,7 +256,8 @@ load service
         [ "$status" = 2 ]
         [[ "$output" == *"fmbd --help"* ]]
     done
-    for wrong in "-x:unknown option '-x'" "--no:unknown option '--no'" "-f:option '-f' needs a value"; do
+    for wrong in "-x:unknown option '-x'" "--no:unknown option '--no'" "-f:option '-f' needs a value" \
+        "-f0:--frames '0': expected a number from 1 to 10000000"; do
         run "$FMBD" "${wrong%%:*}"
         [ "$status:$output" = "2:fmbd: ${wrong#*:}; see fmbd --help" ]
     done
