@@ -229,7 +229,7 @@ void joints_follow(struct joints *joints, const char *path, unsigned long line)
 
 /* ---- Lines of CSV ---- */
 
-enum { LINE_BYTES_MAX = 1 << 20 };
+enum { LINE_BYTES_MAX = 1 << 20 }; /* of a buffer: a line and its line feed take fewer */
 
 /* Columns that are not of joints. */
 #define COLUMN_IGNORED (UINT32_MAX - 3)
@@ -289,12 +289,20 @@ static bool read_line(struct joint_table *table, size_t *found)
     char *text;
     *found = 0;
     do {
+        size_t size = 0;
+        int byte;
         table->line++;
-        const ssize_t size = getline(&table->text, &table->text_capacity, table->file);
         text = table->text;
-        if (size < 0)
-            return !ferror(table->file) || refuse(table, "%s", strerror(errno));
-        if ((size_t) size != strlen(text) || size >= LINE_BYTES_MAX)
+        do {
+            byte = getc(table->file);
+            if (byte > 0)
+                text[size++] = (char) byte;
+        } while (byte > 0 && byte != '\n' && size < LINE_BYTES_MAX);
+        if (ferror(table->file))
+            return refuse(table, "%s", strerror(errno));
+        if (byte == EOF && size == 0)
+            return true;
+        if (byte == 0 || size == LINE_BYTES_MAX)
             return refuse(table,
                           "has a zero byte (save the table as UTF-8), or more than %d bytes (give "
                           "fewer columns)",
@@ -439,10 +447,12 @@ static bool add_row(struct joint_table *table, size_t found)
 
 bool joint_table_read(const char *path, struct joints *joints, struct joint_table *out)
 {
+    const bool named = strcmp(path, "-") != 0;
     size_t found;
-    *out = (struct joint_table){.path = path,
+    *out = (struct joint_table){.path = named ? path : "standard input",
                                 .joints = joints,
-                                .file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r"),
+                                .file = named ? fopen(path, "r") : stdin,
+                                .text = allocate(LINE_BYTES_MAX, 1),
                                 .place = allocate(COMPLAIN_PLACE_MAX, 1)};
     if (!out->file)
         complain("%s: %s", path, strerror(errno));

@@ -63,9 +63,9 @@ struct joint_row {
  * any order: one for each joint that moves and has no value in joints. Columns of mimic joints,
  * "time", in seconds, and "label" are optional; others are ignored. */
 struct joint_table {
-    const char *path;
+    const char *path; /* or "standard input" */
     bool has_time;
-    struct joint_row *rows; /* owned, [row_count]: at least one */
+    struct joint_row *rows; /* owned, [row_count]; at least one if joint_table_read() succeeded */
     size_t row_count;
     /* Private. */
     struct joints *joints;
@@ -74,16 +74,16 @@ struct joint_table {
     char *text, *place; /* owned: of this line, and where it is, for messages */
     char **field;       /* owned: of the line; [columns] */
     unsigned *column;   /* owned: [columns], the joint */
-    size_t columns, text_capacity, row_capacity;
+    size_t columns, row_capacity;
     size_t fixed, unknown;                 /* columns that are ignored */
     char unknown_name[QUERY_NAME_MAX + 1]; /* of the first one */
     struct joint_report step;              /* largest step of a joint from row to row */
     struct owned_scene memory;             /* of values and labels */
 };
 
-/* Reads a file; "-" is standard input. joints: receives the values of one row after the other.
- * Returns false after an error. The caller passes the table to joint_table_clear() in either case.
- */
+/* Reads a file; "-" is standard input. joints: holds the values of the row being read, at the end
+ * those of the last one. Memory: that of the rows, and 1 MB for a line. Returns false after an
+ * error. The caller passes the table to joint_table_clear() in either case. */
 bool joint_table_read(const char *path, struct joints *joints, struct joint_table *out);
 void joint_table_clear(struct joint_table *table);
 

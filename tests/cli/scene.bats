@@ -487,8 +487,40 @@ fmb: t.csv: line 1: no column for joint 'slide': add one, or give its value by -
     refused 'none.csv: No such file' robot.urdf --joints-csv none.csv
     refused '/dev/null: expected a line of joint names' robot.urdf --joints-csv /dev/null
     refused '.: line 1: Is a directory' robot.urdf --joints-csv .
-    head -c 2000000 /dev/zero > t.csv
-    refused 't.csv: line 1: has a zero byte (save the table as UTF-8), or more than 1048575 bytes' robot.urdf --joints-csv t.csv
+}
+
+# Within 5 s and 256 MB. The limit of a line includes its line feed.
+@test "a table whose line has no end is refused, from a file, a device and a pipe" {
+    limited() {
+        # shellcheck disable=SC2016
+        run --separate-stderr timeout 5 bash -c 'ulimit -v 262144; exec "$0" "$@"' "$FMB" "$1" robot.urdf --joints-csv "$2"
+        ended 2
+        is ''
+        said "fmb: $3: has a zero byte (save the table as UTF-8), or more than 1048575 bytes (give fewer columns)"
+    }
+    rows() {
+        printf '%s\n' turn,slide 0,0 0.5,0
+    }
+    for command in scene path; do
+        limited $command /dev/zero '/dev/zero: line 1'
+        rows > t.csv
+        truncate -s 3G t.csv
+        limited $command t.csv 't.csv: line 4'
+        limited $command - 'standard input: line 4' < <(rows && tr '\0' 1 < /dev/zero)
+        mkfifo pipe
+        (rows && tr '\0' 1 < /dev/zero) > pipe 2> /dev/null &
+        limited $command pipe 'pipe: line 4'
+        rm pipe
+    done
+    for zeros in 1048570 1048571; do
+        { rows && printf "%0${zeros}d,0.5" 0 && echo; } > t.csv
+        if [ $zeros = 1048570 ]; then
+            scene robot.urdf --joints-csv t.csv
+            ended 0
+        else
+            limited scene t.csv 't.csv: line 4'
+        fi
+    done
 }
 
 # ---- The world -------------------------------------------------------------------------------
