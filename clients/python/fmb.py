@@ -27,8 +27,8 @@ ValueError, or Error, a ValueError with a status of fmb.h. If the bus fails, or 
 service answers, BusError is raised. A pair that the service could not decide has a status other
 than 0, and no verdict.
 
-Threads may share a scene or a client, and take turns. A child process may use scenes, unless another
-thread was using them during the fork, but not clients.
+Threads may share a scene or a client, and take turns. A child process may use scenes, but not clients.
+A scene that another thread was using during the fork raises Error in the child.
 """
 
 from __future__ import annotations
@@ -223,6 +223,29 @@ class _Handle:
 
     def __reduce_ex__(self, protocol: Any) -> Any:
         raise TypeError(f"fmb: a {type(self).__name__} cannot be copied")
+
+
+class _Shared(_Handle):
+    """An object that one thread at a time uses."""
+
+    _kind: Any = Error  # of an exception
+    _name = "scene"
+
+    def __init__(self) -> None:
+        self._locks = {os.getpid(): threading.Lock()}  # by process
+
+    @property
+    def _lock(self) -> threading.Lock:
+        """The lock of this process. A lock that another thread held during a fork stays held in the child, and the
+        state of the object is unknown there: raises an exception."""
+        process = os.getpid()
+        lock = self._locks.get(process)
+        if lock is None:
+            if any(other.locked() for owner, other in list(self._locks.items()) if owner != process):
+                raise self._kind(f"{self._name}: another thread was using it during the fork: make one in this "
+                                 "process, or fork while no thread uses it")
+            lock = self._locks.setdefault(process, threading.Lock())  # of several threads, one adds its lock
+        return lock
 
 
 # ---- Arguments ----
@@ -737,7 +760,7 @@ class Answers(Sequence):
 # ---- The bus ----
 
 
-class Client(_Handle):
+class Client(_Shared):
     """A client of fmbd on an LCM bus. A client sends each body once: use it for all queries. A child
     process needs its own client. Signals (Ctrl-C) are handled when the current call returns.
 
@@ -751,10 +774,12 @@ class Client(_Handle):
     """
 
     _free = _lib.fmb_client_close
+    _kind, _name = BusError, "client"
 
     def __init__(self, url: Optional[str] = None, prefix: Optional[str] = None, *,
                  timeout: float = 0.5, tries: int = 6, within: float = 0) -> None:
-        self._lock, self._process = threading.Lock(), os.getpid()
+        super().__init__()
+        self._process = os.getpid()
         why = ctypes.create_string_buffer(_WHY_MAX)
         tries = _int("tries", tries)
         if not 0 < tries < 2**31:
@@ -769,7 +794,8 @@ class Client(_Handle):
             raise BusError(why.value.decode(errors="replace"))
 
     def close(self) -> None:
-        """Closes the client. It must not be used afterwards."""
+        """Closes the client. It must not be used afterwards. Raises BusError in a child process if another
+        thread was using it during the fork."""
         with self._lock:
             self.__del__()
             self._handle = None
@@ -828,7 +854,7 @@ def normalized(orientations: Array) -> Any:
     return Rows(scaled) if numpy is None else numpy.array(scaled)
 
 
-class Scene(_Handle):
+class Scene(_Shared):
     """Placed bodies. place() and move() change their poses and motions between queries; all else is fixed.
 
     bodies: n bodies of one dimension; a body may be placed several times
@@ -853,7 +879,7 @@ class Scene(_Handle):
                  end_positions: Optional[Array] = None, end_orientations: Optional[Array] = None,
                  names: Optional[Sequence[Optional[str]]] = None, groups: Optional[Array] = None,
                  ids: Optional[Array] = None, ignored: Optional[Array] = None) -> None:
-        self._lock = threading.Lock()
+        super().__init__()
         self.bodies = _bodies(bodies)
         self.dim = self.bodies[0].dim
         n = len(self.bodies)
@@ -969,8 +995,6 @@ class Scene(_Handle):
         contacts, boxes, points, gaps: also wanted, besides verdicts
         label: for monitoring the bus, at most 64 bytes of UTF-8 without control characters
         client: decides the pairs; None: in process
-
-        A list of pairs is fastest per pair.
         """
         want = (_WANT_TIMES if contacts else 0) + (_WANT_BOX if boxes else 0) + (
             _WANT_POINT if points else 0) + (_WANT_GAP if gaps else 0)
@@ -1121,8 +1145,9 @@ class Robot(_Handle):
             around = _World(ctypes.pointer(of), (_TEXT * n)(*[_text("links", link) for link in world.links]))
             bodies = [world.bodies[i] for i in sorted(range(n), key=lambda i: world.links[i] is None)]
         names = [_text("ignore", name) for pair in self._ignore for name in pair]
-        made = _Made("fmb_robot_scene", "", self._handle, around and ctypes.byref(around), int(around is not None),
-                     (_TEXT * len(names))(*names), len(self._ignore), keeps=(self._made, world, around))
+        with _NO_LOCK if world is None else world._lock:
+            made = _Made("fmb_robot_scene", "", self._handle, around and ctypes.byref(around), int(around is not None),
+                         (_TEXT * len(names))(*names), len(self._ignore), keeps=(self._made, world, around))
         of = self._lib.fmb_robot_scene_get(made._handle).contents
         return _scene_of(of, made, bodies, duration=world.duration if world else None,
                          _robot=(self, made, (_REAL * len(self.joints))(), of.placements,

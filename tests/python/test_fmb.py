@@ -393,8 +393,15 @@ class Bus(Answers):
                 with contextlib.suppress(fmb.BusError):
                     fmb.Scene([fmb.box([1, 1])] * 2).decide(0, client=other)
 
+            def is_not_closed():
+                try:
+                    other.close()
+                except fmb.BusError as error:
+                    return str(error).startswith("client: another thread was using it during the fork: ")
+
             with Busy(wait):
                 self.assertTrue(in_child(is_refused))
+                self.assertTrue(any(in_child(is_not_closed) for _ in range(3)))
         self.assertEqual(scene.pair(0, 1, 0, client=self.client).verdict, fmb.OVERLAPPING)
 
     def test_without_a_service_nothing_is_answered(self):
@@ -533,6 +540,35 @@ class Arrays(unittest.TestCase):
     def test_scenes_are_usable_in_a_child_process(self):
         expected = list(self.scene.decide(0, **WANTED))
         self.assertTrue(in_child(lambda: list(self.scene.decide(0, **WANTED)) == expected))
+
+    def test_a_scene_that_a_thread_used_during_a_fork_is_refused_in_the_child(self):
+        used = fmb.Scene([fmb.box([1, 1, 1])] * 300)
+        expected = list(self.scene.decide(0, **WANTED))
+
+        def is_refused():
+            for call in (lambda: used.decide(0), lambda: used.pair(0, 1, 0), lambda: used.place([[0, 0, 0]] * 300)):
+                try:
+                    call()
+                except fmb.Error as error:
+                    if not str(error).startswith("scene: another thread was using it during the fork: "):
+                        return False
+                else:
+                    return False
+            wrong = []
+
+            def work():
+                for _ in range(200):
+                    if list(self.scene.decide(0, **WANTED)) != expected:
+                        wrong.append(1)
+
+            with Busy(work), Busy(work):
+                pass
+            return not wrong
+
+        # The thread does not use the scene between two queries.
+        with Busy(lambda: used.decide(0, **WANTED)):
+            self.assertTrue(any(in_child(is_refused) for _ in range(3)))
+        self.assertEqual(used.pair(0, 1, 0).verdict, fmb.OVERLAPPING)
 
     def refused(self, error, start, call):
         with self.subTest(start):
