@@ -27,7 +27,7 @@ static const char usage[] =
     "\n"
     "Transformations, applied in the order given. Those after a file apply to that\n"
     "mesh, those before the first file to both.\n"
-    "  --scale S            S, or X,Y,Z: a factor for each axis; -1,1,1 mirrors in x\n"
+    "  --scale S            S, or X,Y,Z: a factor for each axis; -1,1,1 mirrors x\n"
     "  --rotate AXIS,DEGREES    about the axis x, y or z through the origin, by the\n"
     "                       right-hand rule\n"
     "  --translate X,Y,Z\n"

@@ -111,29 +111,25 @@ static unsigned char *read_file(const char *path, size_t *size, char error[MESH_
     struct stat about = {0};
     FILE *file = NULL;
     unsigned char *bytes = NULL;
-    const char *why = NULL;
-    char no_memory[64];
-    if (stat(path, &about) != 0)
-        why = strerror(errno);
-    else if (S_ISDIR(about.st_mode))
-        why = "a folder, not a file";
-    else if (!S_ISREG(about.st_mode))
-        why = "no regular file: write what it gives into one first";
-    else if (!(file = fopen(path, "rbe")))
-        why = strerror(errno);
-    else if (!(bytes = malloc((size_t) about.st_size + 1)))
-        why = no_memory;
-    else if (fread(bytes, 1, (size_t) about.st_size, file) < (size_t) about.st_size)
-        why = ferror(file) ? strerror(errno) : "the file became shorter while it was read";
+    size_t done = 0;
+    if (stat(path, &about) != 0 || (S_ISREG(about.st_mode) && !(file = fopen(path, "rbe"))))
+        snprintf(error, MESH_ERROR_MAX, "%s", strerror(errno));
+    else if (!file)
+        snprintf(error, MESH_ERROR_MAX, "%s",
+                 S_ISDIR(about.st_mode) ? "a folder, not a file"
+                                        : "no regular file: write what it gives into one first");
     *size = (size_t) about.st_size;
-    snprintf(no_memory, sizeof no_memory, "there is no memory for its %zu bytes", *size);
+    if (file && !(bytes = malloc(*size + 1)))
+        snprintf(error, MESH_ERROR_MAX, "there is no memory for its %zu bytes", *size);
+    else if (file && (done = fread(bytes, 1, *size, file)) < *size)
+        snprintf(error, MESH_ERROR_MAX, "byte %zu: %s", done,
+                 ferror(file) ? strerror(errno) : "the file became shorter while it was read");
     if (file)
         fclose(file);
-    if (!why) {
+    if (bytes && done == *size) {
         bytes[*size] = '\0';
         return bytes;
     }
-    snprintf(error, MESH_ERROR_MAX, "%s", why);
     free(bytes);
     return NULL;
 }

@@ -4,6 +4,7 @@
 #include "fmb_batch.h"
 #include "progress.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,7 +41,9 @@ void mesh_face_body(const struct mesh *mesh, unsigned face, struct fmb_body *out
     double vertex[3][3];
     for (int corner = 0; corner < 3; corner++)
         memcpy(vertex[corner], mesh->vertex[mesh->face[face][corner]], sizeof vertex[corner]);
-    fmb_body_make_vertices(3, FMB_FACE, vertex[0], 9, out);
+    const enum fmb_status status = fmb_body_make_vertices(3, FMB_FACE, vertex[0], 9, out);
+    assert(status == FMB_OK);
+    (void) status;
 }
 
 /* ---- Trees ---- */

@@ -26,7 +26,8 @@ struct mesh_intersection {
     bool moving;
 };
 
-/* Makes the body of a face: the triangle of its vertices, exactly. */
+/* Makes the body of a face: the triangle of its vertices, exactly. In: a mesh on which
+ * mesh_transform() succeeded. */
 void mesh_face_body(const struct mesh *mesh, unsigned face, struct fmb_body *out);
 
 /* In: meshes on which mesh_transform() succeeded. Returns FMB_OK and an intersection, which the

@@ -22,9 +22,9 @@ struct mesh_transform {
 };
 
 /* Applies the steps in order. Rotations follow the right-hand rule; multiples of 90 degrees are
- * exact. Rotations and scales are about the origin. Returns SIZE_MAX; or
- * the index of the first vertex with a coordinate beyond half of the largest double, with which the
- * length of an edge might overflow. */
+ * exact. Rotations and scales are about the origin. Returns SIZE_MAX; or the index of the first
+ * vertex with a coordinate beyond half of the largest double, with which the length of an edge
+ * might overflow. */
 size_t mesh_transform(const struct mesh_transform *transform, struct mesh *mesh);
 
 #endif

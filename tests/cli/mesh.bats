@@ -185,6 +185,9 @@ apart() {
     cannot_read "$BATS_TEST_TMPDIR: a folder, not a file" a.obj "$BATS_TEST_TMPDIR"
     : > nothing.obj
     cannot_read 'nothing.obj: byte 0: the file is empty' nothing.obj b.obj
+    # A file of the kernel, which states a size of 4096 bytes.
+    size=$(wc -c < <(cat /sys/devices/system/cpu/online))
+    cannot_read "/sys/devices/system/cpu/online: byte $size: the file became shorter while it was read" a.obj /sys/devices/system/cpu/online
     printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' > broken.obj
     mesh a.obj broken.obj --json
     ended 2
