@@ -77,7 +77,7 @@ struct path_run {
     struct output *file;     /* of the proof; NULL: none */
     struct path_proof proof; /* if there is a file */
     double clearance;        /* to be proven; 0: none */
-    const double *at;        /* the same at the end of the stated part of an edge */
+    const double *at;        /* values of the joints at the end of the stated part of an edge */
     size_t edges, count[FMB_ROBOT_UNDECIDED + 1];
     double least; /* proven of all edges */
     char *first;  /* owned: a command that shows the first edge that is not free */
@@ -86,7 +86,7 @@ struct path_run {
 /* What is known of an edge besides the answer. */
 struct edge {
     size_t number;
-    const struct joint_row *from, *to; /* the same row: a path of one */
+    const struct joint_row *from, *to; /* rows at its ends: the same row if the path has only one */
 };
 
 static const struct fmb_placement *body_of(const struct path_run *run, size_t i)

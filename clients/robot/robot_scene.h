@@ -85,10 +85,11 @@ const struct fmb_body *robot_body(struct robot *robot, const struct robot_link *
                                   struct owned_scene *scene, struct robot_meshes *meshes,
                                   struct pose *origin);
 
-/* Reads the SRDF file of the options into a robot whose bodies are made. Returns false after
- * errors, which the robot has. */
+/* Reads the SRDF file of the options into a robot whose bodies are made (urdf.c). Returns false
+ * after errors, which the robot has. */
 bool robot_read_srdf(struct fmb_robot *robot);
 
+/* A scene of JSON, whose bodies links may carry. */
 struct fmb_robot_json {
     struct owned_scene owner;
     struct fmb_robot_world world;

@@ -1,9 +1,9 @@
-/* Reads URDF: links and joints; all else (<visual>, <inertial>, <gazebo>, ...) is ignored. Links,
- * joints and elements are bounded (robot.h).
+/* Reads robots: URDF (links and joints; <visual>, <inertial>, <gazebo> and others are ignored), and
+ * SRDF (pairs of links that are not tested; <group>, <end_effector> and others are ignored).
  *
- * Reads SRDF: which pairs of links are not tested. All else (<group>, <end_effector>, ...) is
- * ignored. As in MoveIt, <disable_collisions> has precedence over <enable_collisions>, and both
- * over <disable_default_collisions>, which disables all pairs of a link. */
+ * Links, joints and elements are bounded (robot.h). As in MoveIt, <disable_collisions> has
+ * precedence over <enable_collisions>, and both over <disable_default_collisions>, which disables
+ * all pairs of a link. */
 #include "robot_scene.h"
 #include "xml.h"
 
