@@ -168,10 +168,11 @@ run_trial() {
 if [ -n "$trial" ]; then
     trap stop_all EXIT
     trap 'exit 1' HUP INT TERM
+    bus=${LCM_DEFAULT_URL-} # a trial may lead its clients to a relay
     run_trial
     code=$?
     stop_all
-    unset LCM_DEFAULT_URL
+    export LCM_DEFAULT_URL="$bus"
     "$build/fmb" status --json > "$out/$trial.status" 2> /dev/null
     # A service that restart() started is no child of this shell.
     fmbd=$(cat "$out/$trial.pid")
