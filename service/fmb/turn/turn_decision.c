@@ -71,10 +71,11 @@ static void remember(struct turn_decision *decision, double at, enum fmb_verdict
     decision->next_known = (decision->next_known + 1) % TURN_KNOWN;
 }
 
-/* Begins the programs for the pose at s: for the nearest point, or for the verdict, with want as in
- * programs_begin(). If a frame has a radius, the nearest point gives the verdict. */
-static void begin_programs(struct turn_decision *decision, double s, bool nearest, unsigned want)
+/* Begins the programs for the pose at s: for the nearest point, or for the verdict; in the stage
+ * TURN_CORNER, for its proof too. If a frame has a radius, the nearest point gives the verdict. */
+static void begin_programs(struct turn_decision *decision, double s, bool nearest)
 {
+    const unsigned want = decision->stage == TURN_CORNER ? FMB_WANT_CERTIFICATE : 0;
     struct support_pair *pair = &decision->path.pair;
     struct support_column first[FMB_DIM_MAX + 1];
     const bool guessed = pair->usable && decision->looked == s;
@@ -138,7 +139,7 @@ static enum fmb_verdict verdict_at(struct turn_decision *decision, double s)
 {
     const enum fmb_verdict verdict = verdict_in_doubles(decision, s);
     if (verdict == 0 && !decision->bounded)
-        begin_programs(decision, s, false, 0);
+        begin_programs(decision, s, false);
     return verdict;
 }
 
@@ -167,7 +168,6 @@ static void add_corners(struct turn_decision *decision, int of, unsigned v0, uns
 struct turn_features {
     uint16_t vertex[FMB_HULL_VERTICES_MAX];
     unsigned count;
-    bool partial;              /* a hull has more vertices */
     unsigned char edge[32][2]; /* indices of vertex */
     unsigned edges;
 };
@@ -181,7 +181,6 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
     const struct support_view *view = &decision->path.pair.view[f];
     const struct fmb_frame *frame = view->placed.frame;
     out->count = view->vertices.count;
-    out->partial = false;
     out->edges = 0;
     if (frame->shape == FMB_CUBOID || frame->shape == FMB_BOX) {
         out->count = 1 + (unsigned) frame->count;
@@ -196,7 +195,6 @@ static void set_features(const struct turn_decision *decision, int f, struct tur
     for (unsigned i = 0; i < out->count; i++)
         out->vertex[i] = (uint16_t) i;
     if (out->count > NEAR_VERTICES) {
-        out->partial = true;
         double n[FMB_DIM_MAX];
         const double *last = decision->nearest.direction;
         turn_body_direction(view, vec3_dot(last, last) > 0 ? last : decision->toward, n);
@@ -279,7 +277,7 @@ static void begin_nearest(struct turn_decision *decision, double at)
     if (decision->nearest_at == at)
         list_nearest(decision);
     else
-        begin_programs(decision, at, known_at(decision, at) != FMB_TOUCHING, FMB_WANT_CERTIFICATE);
+        begin_programs(decision, at, known_at(decision, at) != FMB_TOUCHING);
 }
 
 /* Lists the directions by vertices that will be tried. */
@@ -288,11 +286,9 @@ static void begin_corners(struct turn_decision *decision)
     struct turn_features of[2];
     const int dim = decision->path.pair.dim;
     begin_list(decision, -1);
-    decision->partial = false;
     decision->began = decision->looks;
     for (int f = 0; f < 2; f++) {
         set_features(decision, f, &of[f]);
-        decision->partial = decision->partial || (of[f].partial && dim == 3);
         const struct turn_features *on = &of[f];
         for (unsigned i = 0; i < on->count; i++)
             for (unsigned j = i + 1; j < on->count; j++) {
@@ -544,7 +540,7 @@ static void look_at(struct turn_decision *decision, struct turn_interval interva
         if (may_cross(decision, interval))
             begin_corners(decision);
         else
-            begin_programs(decision, middle, false, 0);
+            begin_programs(decision, middle, false);
         return;
     }
     if (verdict != FMB_SEPARATED && add_contact(decision, middle, verdict, interval))
@@ -578,7 +574,7 @@ static void look_exactly(struct turn_decision *decision, struct turn_interval in
     const double middle = cut_of(decision, interval);
     const enum fmb_verdict verdict = known_at(decision, middle);
     if (verdict == 0)
-        begin_programs(decision, middle, false, 0);
+        begin_programs(decision, middle, false);
     else if (verdict == FMB_SEPARATED || !add_contact(decision, middle, verdict, interval))
         divide(decision, interval);
 }
@@ -639,12 +635,25 @@ static void divide_open(struct turn_decision *decision, struct turn_interval int
     }
 }
 
+/* Whether begin_corners() lists all directions by vertices. In 2D it may leave some out, but the
+ * direction towards the nearest point was not found to separate more pairs there. */
+static bool lists_all(const struct support_pair *pair)
+{
+    bool all = true;
+    for (int f = 0; f < 2; f++) {
+        const struct support_view *view = &pair->view[f];
+        all =
+            all && (view->placed.frame->shape != FMB_HULL || view->vertices.count <= NEAR_VERTICES);
+    }
+    return all || pair->dim == 2;
+}
+
 static void try_corner(struct turn_decision *decision, struct turn_interval interval)
 {
     struct turn_exact *exact = &decision->exact;
     const double middle = cut_of(decision, interval);
     const bool complete =
-        decision->corners_at >= 0 || !decision->partial || !isnan(decision->cleared);
+        decision->corners_at >= 0 || lists_all(&decision->path.pair) || !isnan(decision->cleared);
     enum turn_outcome outcome;
     if (exact->trial) {
         if (!turn_exact_step(exact, &outcome))
@@ -673,8 +682,8 @@ static void try_corner(struct turn_decision *decision, struct turn_interval inte
              interval.hi - interval.lo > least_interval)
         divide_open(decision, interval);
     else if (decision->outcome == TURN_OPEN && decision->corners_at != interval.hi)
-        /* Frames that touch at an end of the interval may separate in the direction there. So may
-         * hulls of which not all directions were listed, in that at the middle. */
+        /* Frames that touch at an end of the interval may separate in the direction there. Hulls of
+         * which not all directions were listed may separate in the direction at the middle. */
         begin_nearest(decision, decision->corners_at == interval.lo ? interval.hi
                                 : decision->corners_at == middle    ? interval.lo
                                                                     : middle);
@@ -986,7 +995,7 @@ static void step_gap(struct turn_decision *decision, struct fmb_answer *answer)
 static void begin_point(struct turn_decision *decision)
 {
     if (decision->in[0] <= decision->in[1] && decision->want & FMB_WANT_POINT)
-        begin_programs(decision, decision->overlaps ? decision->overlap : decision->in[0], true, 0);
+        begin_programs(decision, decision->overlaps ? decision->overlap : decision->in[0], true);
     else
         turn_end(decision);
 }

@@ -68,8 +68,8 @@ struct turn_part {
 };
 
 struct turn_proof {
-    unsigned
-        count; /* above TURN_PROOF: there are more parts, or doubles do not state a direction */
+    /* Above TURN_PROOF: there are more parts, or doubles do not represent a direction. */
+    unsigned count;
     struct turn_part part[TURN_PROOF];
 };
 
@@ -107,7 +107,6 @@ struct turn_decision {
     enum fmb_verdict nearest_verdict;  /* at this time */
     struct turn_corners nearest_edges; /* the edges that this point is on, if nearest_are_edges */
     bool nearest_are_edges;
-    bool partial;              /* 3D: only some of a hull's directions by vertices were listed */
     double corners_at;         /* the time of the listed directions; -1: by vertices */
     struct programs *programs; /* of the pose of the path */
     struct turn_corners corners[TURN_CORNERS];
