@@ -106,7 +106,7 @@ static void *take(struct cache *cache, size_t count, size_t size)
 static void take_arrays(struct cache *cache)
 {
     const size_t frames = (size_t) cache->counts.frame_capacity;
-    cache->size = (size_t) - (uintptr_t) cache->memory % LINE;
+    cache->size = (LINE - (uintptr_t) cache->memory % LINE) % LINE; /* to the first line */
     cache->bucket = take(cache, bucket_count(cache), sizeof *cache->bucket);
     cache->set = take(cache, (size_t) 1 << (64 - cache->set_shift), sizeof *cache->set);
     cache->entry = take(cache, frames + 1, sizeof *cache->entry);
