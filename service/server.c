@@ -290,8 +290,8 @@ static bool answer_short(struct server *server)
 
 /* Answers a query at once, or begins a job for it; a pair that takes several steps, from the FIFO
  * of short queries, is moved to that of scenes if the client has other scenes or no job is free.
- * (The queue has capacity for it, from which it has just been popped.) It is begun anew from there:
- * bodies that were found count as hits again. Returns the job; NULL: none. */
+ * (The queue has capacity for it: it has just been popped.) It is begun again later, and bodies
+ * that were found then count as hits twice. Returns the job; NULL: none. */
 static struct job *begin(struct server *server, const struct queue_datagram *query,
                          enum queue_fifo fifo)
 {

@@ -42,8 +42,8 @@ static const struct part_answer *find(struct part_answers *answers, int32_t numb
     return &answers->answer[answers->delivered++];
 }
 
-/* Delivers the answer to a pair, unless the pair is left out: of ALL and ACROSS those that are not
- * decided, and, unless each is a separate query, those that are separated and not near. */
+/* Delivers the answer to a pair. If the pairs are ALL or ACROSS, leaves out pairs that are not
+ * decided, and, unless each pair is a query of its own, pairs that are separated and not near. */
 static void deliver_pair(struct scene_run *run, struct part_answers *answers, int32_t number,
                          const unsigned pair[2])
 {

@@ -1,6 +1,6 @@
 /* Queries a scene: divides it into parts of one datagram (division.h), keeps several under way
- * (request.h), and delivers the answers in the order of the pairs: those to listed pairs at once,
- * those to blocks when their row is complete. */
+ * (request.h), and delivers the answers in the order of the pairs: of listed pairs at once, of
+ * blocks when their row is complete. */
 #ifndef SCENE_RUN_H
 #define SCENE_RUN_H
 

@@ -30,7 +30,7 @@ bool definitions_add(struct definitions *definitions, const struct body_view *vi
 void definitions_add_query(struct definitions *definitions, const struct logged_query *query);
 
 /* Adds the bodies that have frames in a message: a pair query, a scene query, or a definition;
- * others have none. Sets its names too, and those of a names_t, unless names is NULL. Returns NULL;
+ * others have none. Sets the names in a query or a names_t too, unless names is NULL. Returns NULL;
  * or a static text: why the message cannot be decoded. Then nothing of it was added. */
 const char *definitions_add_message(struct definitions *definitions, struct body_names *names,
                                     enum log_kind kind, const void *bytes, uint32_t size);

@@ -81,8 +81,8 @@ enum log_outcome log_next(struct log_reader *reader, struct log_event *event,
  * damage is reported again. */
 void log_seek(struct log_reader *reader, int64_t offset);
 
-/* Reads all data of an event, including those not kept. Returns false on error: errno. After an
- * error, all later calls and log_next() fail too. */
+/* Reads all data of an event, including the bytes that were not kept. Returns false on error:
+ * errno. After an error, all later calls and log_next() fail too. */
 bool log_read_data(struct log_reader *reader, const struct log_event *event, unsigned char *out);
 
 #endif

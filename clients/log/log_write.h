@@ -26,7 +26,7 @@ struct log_writer *log_begin_output(const struct output *output);
 
 /* Appends an event. Events are numbered from 0. In: utime: time of receipt, microseconds since
  * 1970; channel_length from 1 to LOG_CHANNEL_MAX - 1; size up to INT32_MAX. Returns false on error:
- * errno. Exits with status 1 if memory is exhausted. Memory: that of the largest event. */
+ * errno. Exits with status 1 if memory is exhausted: the buffer holds the largest event. */
 bool log_append(struct log_writer *writer, int64_t utime, const char *channel,
                 size_t channel_length, const void *data, size_t size);
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Statements that define no surface, and those that define one other than f. The first DETECTED of
- * the former identify a file without an extension, as do v and f. */
+/* skipped: statements that define no surface; the first DETECTED identify a file without an
+ * extension, as v and f do. surfaces: statements other than f that define a surface. */
 enum { DETECTED = 8 };
 static const char *const skipped[] = {
     "vn",       "vt",         "o",         "g",      "s",      "usemtl", "mtllib", "vp",

@@ -62,8 +62,8 @@ static void take_golden(struct replay *replay, enum log_kind kind, const struct 
     match_add(&replay->golden, &item);
 }
 
-/* Adds the golden results to those that are compared, each with its own query. Returns false if
- * there are none, which was reported. */
+/* Adds the golden results, each with its own query, to the results to compare with. Returns false
+ * if there are none, which was reported. */
 static bool add_golden_results(struct replay *replay)
 {
     struct match *golden = &replay->golden;

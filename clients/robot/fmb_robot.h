@@ -115,9 +115,12 @@ const struct fmb_robot_world *fmb_robot_json_get(const struct fmb_robot_json *js
  * the names of the links; then carried bodies; then the others, each in the order of the worlds.
  * Bodies whose ids are taken get the lowest free ids. Links that fixed joints alone connect have
  * one group, unless there is an SRDF file. duration and margin are the largest of the worlds. The
- * robot is in its home pose. In:  worlds  [world_count] ignore  [ignore_count][2], names of links
- * or bodies: pairs that are not tested Out: *out    set in any case, for fmb_robot_scene_why(); to
- * be freed Returns 0; or -1 after errors. */
+ * robot is in its home pose.
+ *
+ * In:  worlds  [world_count]
+ *      ignore  [ignore_count][2], names of links or bodies: pairs that are not tested
+ * Out: *out    set in any case, for fmb_robot_scene_why(); to be freed
+ * Returns 0; or -1 after errors. */
 int fmb_robot_scene(const struct fmb_robot *robot, const struct fmb_robot_world *worlds,
                     size_t world_count, const char *const (*ignore)[2], size_t ignore_count,
                     struct fmb_robot_scene **out);

@@ -38,7 +38,7 @@ bool joints_open(const struct robot *robot, const char *text, double slack, stru
 void joints_clear(struct joints *joints);
 
 /* Sets the mimic joints that are not given, from the values of the joints that they follow. path
- * and line: place of those values, for messages. joint_table_read() calls it for each row. */
+ * and line: place of these values, for messages. joint_table_read() calls it for each row. */
 void joints_follow(struct joints *joints, const char *path, unsigned long line);
 
 /* Returns whether all values are within the slack. If not, reports the farthest value of each joint
@@ -81,9 +81,9 @@ struct joint_table {
     struct owned_scene memory;             /* of values and labels */
 };
 
-/* Reads a file; "-" is standard input. joints: holds the values of the row being read, at the end
- * those of the last one. Memory: that of the rows, and 1 MB for a line. Returns false after an
- * error. The caller passes the table to joint_table_clear() in either case. */
+/* Reads a file; "-" is standard input. joints: receives the values of each row; at the end it has
+ * the values of the last row. Memory: all rows, and 1 MB for a line. Returns false after an error.
+ * The caller passes the table to joint_table_clear() in either case. */
 bool joint_table_read(const char *path, struct joints *joints, struct joint_table *out);
 void joint_table_clear(struct joint_table *table);
 

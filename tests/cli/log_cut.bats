@@ -59,7 +59,7 @@ outcomes() {
     has '.unknown_handles > 0'
 }
 
-@test "replays of the cuts of adjacent time ranges add up to that of the log" {
+@test "replays of cuts of adjacent time ranges add up to the replay of the log" {
     for kind in clients arm; do
         generate "$kind" "$log"
         for span in '--to 0.013' '--from 0.013 --to 0.06' '--from 0.06 --to 0.2' '--from 0.2'; do
@@ -104,7 +104,7 @@ outcomes() {
     has '.pair_queries > 0 and .others > 0'
 }
 
-@test "events of several logs at the same offset are told apart" {
+@test "events at the same offset of several logs are distinguished" {
     generate stack "$log"
     "$FMB_BUILD/edit-log" --events 0 1 --rename FMB_SCENE_QUERY OTHER "$log" "$T/first.log"
     "$FMB_BUILD/edit-log" --events 8 40 "$log" "$T/second.log"

@@ -33,8 +33,8 @@ void slab_truth_clear(struct slab_truth *truth);
 /* slabs_prepare() of a checked pair. */
 bool slab_truth_prepare(const struct pair *pair, struct slabs_pair *out);
 
-/* On input: a checked pair of cuboids, tetrahedra and faces that are not turned, each with its
- * origin at that of the body. */
+/* On input: a checked pair of cuboids, tetrahedra and faces that are not turned. The origin of each
+ * frame is the origin of its body. */
 void slab_truth_set(struct slab_truth *truth, const struct pair *pair);
 
 /* On output: low to zero, of this slab of the pair that is set. */
